@@ -1,0 +1,18 @@
+// Densities in logarithms.
+#pragma once
+
+#include "lfdtools/linalg.hpp"
+
+namespace lfd {
+
+inline constexpr double log_2pi = 1.8378770664093454835606594728112353;
+
+/// ln sum_i exp(v_i), without overflow; -inf for an empty vector or one of -inf alone.
+[[nodiscard]] double log_sum_exp(const Eigen::Ref<const Vector>& v);
+
+/// ln N(x; mu, L L^T), paper eq. (2).
+/// @param x, mu  d   @param L  lower Cholesky factor of the covariance, d x d
+[[nodiscard]] double log_normal_density(const Eigen::Ref<const Vector>& x, const Eigen::Ref<const Vector>& mu,
+                                        const Matrix& L);
+
+}  // namespace lfd
