@@ -1,1 +1,203 @@
-// path
+#include "lfdtools/path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "lfdtools/error.hpp"
+#include "lfdtools/posture_graph.hpp"
+
+namespace lfd {
+namespace {
+
+using Layer = std::vector<IkSolution>;
+
+void check(const std::vector<Pose>& flange, const Vector& times, const PathOptions& options) {
+  const bool positive = options.tolerance > 0.0 && options.max_step > 0.0 && options.midpoint_tolerance > 0.0;
+  if (!positive || !(options.step_slack >= 1.0) || (options.seed && !options.seed->allFinite())) {
+    throw UsageError("path.options",
+                     "tolerances and the largest step must be positive, the slack at least 1 and the seed finite");
+  }
+  const auto T = static_cast<Eigen::Index>(flange.size());
+  if (T < 1 || times.size() != T) {
+    throw DataError("path.shape", fmt::format("{} poses but {} times", flange.size(), times.size()));
+  }
+  if (!times.allFinite()) throw DataError("path.not_finite", "a time is not a finite number");
+  for (Eigen::Index t = 1; t < T; ++t) {
+    if (times[t] > times[t - 1]) continue;
+    throw DataError("path.time_not_rising", fmt::format("time {} s is not after {} s", times[t], times[t - 1]));
+  }
+  for (std::size_t t = 0; t < flange.size(); ++t) {
+    if (is_rigid(flange[t])) continue;
+    throw DataError("ur10.pose_not_rigid",
+                    fmt::format("the pose of sample {} is not finite or its rotation is not orthonormal", t + 1));
+  }
+}
+
+bool has_free_wrist(const Layer& layer) {
+  return std::any_of(layer.begin(), layer.end(), [](const IkSolution& s) { return s.wrist_free; });
+}
+
+bool same_arm(const IkSolution& a, const IkSolution& b) {
+  return (a.branch & 5) == (b.branch & 5);
+}
+
+/// Adds the solution of a singular wrist with q6 as near as can be to the given value, for the same shoulder and elbow.
+void add_with_q6(const InverseKinematics& arm, const Pose& pose, double tolerance, const IkSolution& like, double q6,
+                 Layer& layer) {
+  IkOptions options;
+  options.tolerance = tolerance;
+  options.seed = like.joints;
+  (*options.seed)[5] = q6;
+  for (const IkSolution& solution : arm(pose, options)) {
+    if (!solution.wrist_free || !same_arm(solution, like)) continue;
+    const bool known = std::any_of(layer.begin(), layer.end(), [&](const IkSolution& other) {
+      return same_arm(other, solution) && std::abs(wrap_angle(other.joints[5] - solution.joints[5])) < 1e-9;
+    });
+    if (!known) layer.push_back(solution);
+  }
+}
+
+/// Where the wrist is singular over samples first..last, q6 may be anything, and the solver's own choice need not meet
+/// that of the neighbours. Adds q6 going evenly in time from every neighbour before to every one after, or staying as
+/// on the one side there is, or, with no neighbours, at eight constant values.
+void connect_free_wrists(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                         double tolerance, std::vector<Layer>& layers, std::size_t first, std::size_t last) {
+  const bool has_before = first > 0, has_after = last + 1 < layers.size();
+  const double begin = times[static_cast<Eigen::Index>(has_before ? first - 1 : first)];
+  const double end = times[static_cast<Eigen::Index>(has_after ? last + 1 : last)];
+  for (std::size_t t = first; t <= last; ++t) {
+    const auto add = [&](const IkSolution& like, double q6) {
+      add_with_q6(arm, flange[t], tolerance, like, q6, layers[t]);
+    };
+    const double share = (times[static_cast<Eigen::Index>(t)] - begin) / std::max(end - begin, 1e-300);
+    if (has_before && has_after) {
+      for (const IkSolution& before : layers[first - 1]) {
+        for (const IkSolution& after : layers[last + 1]) {
+          if (!same_arm(before, after)) continue;
+          add(before, before.joints[5] + share * wrap_angle(after.joints[5] - before.joints[5]));
+        }
+      }
+    } else if (has_before || has_after) {
+      const Layer& side = has_before ? layers[first - 1] : layers[last + 1];
+      for (const IkSolution& neighbour : side) add(neighbour, neighbour.joints[5]);
+    } else {
+      const Layer own = layers[t];
+      for (const IkSolution& like : own) {
+        for (int eighth = 0; eighth < 8; ++eighth) add(like, eighth * std::numbers::pi / 4.0);
+      }
+    }
+  }
+}
+
+std::vector<Layer> solve_layers(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                                const PathOptions& options) {
+  std::vector<Layer> layers;
+  layers.reserve(flange.size());
+  IkOptions ik;
+  ik.tolerance = options.tolerance;
+  ik.seed = options.seed;
+  for (const Pose& pose : flange) {
+    const IkSolutions found = arm(pose, ik);
+    layers.emplace_back(found.begin(), found.end());
+  }
+  for (std::size_t first = 0; first < layers.size(); ++first) {
+    if (!has_free_wrist(layers[first])) continue;
+    std::size_t last = first;
+    while (last + 1 < layers.size() && has_free_wrist(layers[last + 1])) ++last;
+    connect_free_wrists(arm, flange, times, options.tolerance, layers, first, last);
+    first = last;
+  }
+  return layers;
+}
+
+/// How far the hand is from the way between two poses when every joint is midway between its angles.
+double deviation_midway(const Robot& robot, const Joints& q0, const Joints& q1, const Pose& from, const Pose& to) {
+  return distance(forward_kinematics(robot, 0.5 * (q0 + q1)), interpolate(from, to, 0.5)).largest();
+}
+
+/// Sets status, sample and reason of a path whose joints are known.
+void judge(const PathOptions& options, JointPath& path) {
+  for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
+    Eigen::Index joint = 0;
+    const double step = (path.joints.row(t) - path.joints.row(t - 1)).cwiseAbs().maxCoeff(&joint);
+    if (!(step > options.max_step)) continue;
+    path.status = PathStatus::jump;
+    path.sample = t;
+    path.reason =
+        fmt::format("joint {} moves {:.3g} rad to sample {} on the best of all paths", joint + 1, step, t + 1);
+    return;
+  }
+  for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
+    if (!(path.midpoint_deviation[t] > options.midpoint_tolerance)) continue;
+    path.status = PathStatus::deviates;
+    path.sample = t;
+    path.reason = fmt::format("the hand is off its path by {:.3g} (m or rad) midway to sample {}",
+                              path.midpoint_deviation[t], t + 1);
+    return;
+  }
+}
+
+}  // namespace
+
+JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                     const PathOptions& options) {
+  check(flange, times, options);
+  const Robot& robot = arm.robot();
+  JointPath path;
+  path.joints.resize(0, 6);
+  const std::vector<Layer> layers = solve_layers(arm, flange, times, options);
+  for (std::size_t t = 0; t < layers.size(); ++t) {
+    if (layers[t].empty()) path.unreachable.push_back(static_cast<Eigen::Index>(t));
+  }
+  if (!path.unreachable.empty()) {
+    path.status = PathStatus::unreachable;
+    path.sample = path.unreachable.front();
+    path.reason = fmt::format("sample {} is out of reach", path.sample + 1);
+    return path;
+  }
+
+  std::vector<std::vector<Posture>> postures(layers.size());
+  for (std::size_t t = 0; t < layers.size(); ++t) {
+    for (const IkSolution& solution : layers[t]) postures[t].push_back({solution.joints, solution.branch});
+  }
+  Way way = best_way(postures, times, robot.limits,
+                     {options.seed, options.max_step, options.step_slack, options.respect_limits});
+  if (way.posture.empty()) {
+    path.status = PathStatus::outside_limits;
+    path.sample = way.blocked;
+    path.reason = fmt::format("no path within the joint ranges comes to sample {}", way.blocked + 1);
+    return path;
+  }
+
+  const auto T = static_cast<Eigen::Index>(layers.size());
+  path.joints = std::move(way.joints);
+  path.largest_step_ratio = way.largest_ratio;
+  path.residual = Vector::Zero(T);
+  path.condition = Vector::Zero(T);
+  path.midpoint_deviation = Vector::Zero(T);
+  for (Eigen::Index t = 0; t < T; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    const Joints q = path.joints.row(t).transpose();
+    const IkSolution& solution = layers[i][static_cast<std::size_t>(way.posture[i])];
+    path.branch.push_back(solution.branch);
+    path.residual[t] = distance(forward_kinematics(robot, q), flange[i]).largest();
+    path.condition[t] = condition_number(jacobian(robot, q));
+    if (t == 0) continue;
+    const Joints before = path.joints.row(t - 1).transpose();
+    path.midpoint_deviation[t] = deviation_midway(robot, before, q, flange[i - 1], flange[i]);
+    path.branch_changes += path.branch[i] != path.branch[i - 1] ? 1 : 0;
+  }
+  judge(options, path);
+  return path;
+}
+
+JointPath solve_path(const Robot& robot, const std::vector<Pose>& flange, const Vector& times,
+                     const PathOptions& options) {
+  return solve_path(InverseKinematics(robot), flange, times, options);
+}
+
+}  // namespace lfd

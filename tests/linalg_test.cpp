@@ -47,3 +47,12 @@ TEST_CASE("the log density of a plane normal equals the formula") {
   const double expected = -std::log(2 * M_PI) - 0.5 * std::log(determinant) - 0.5 * form;
   CHECK(log_normal_density(x, mu, cholesky(Sigma)) == Approx(expected).epsilon(1e-14));
 }
+
+TEST_CASE("quantiles of Student's t equal its tables") {
+  CHECK(student_t_quantile(0.975, 1) == Approx(12.706204736174698).epsilon(1e-12));
+  CHECK(student_t_quantile(0.975, 2) == Approx(4.302652729749464).epsilon(1e-12));
+  CHECK(student_t_quantile(0.975, 10) == Approx(2.228138851986273).epsilon(1e-12));
+  CHECK(student_t_quantile(0.025, 30) == Approx(-2.0422724563012373).epsilon(1e-12));
+  CHECK(student_t_quantile(0.975, std::numeric_limits<double>::infinity()) == Approx(1.959963984540054).epsilon(1e-12));
+  CHECK(student_t_quantile(0.5, 3) == Approx(0).margin(1e-12));
+}

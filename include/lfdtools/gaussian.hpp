@@ -15,4 +15,8 @@ inline constexpr double log_2pi = 1.8378770664093454835606594728112353;
 [[nodiscard]] double log_normal_density(const Eigen::Ref<const Vector>& x, const Eigen::Ref<const Vector>& mu,
                                         const Matrix& L);
 
+/// Quantile of Student's t distribution.
+/// @param p  in (0, 1)   @param nu  degrees of freedom, positive; infinite: the normal distribution
+[[nodiscard]] double student_t_quantile(double p, double nu);
+
 }  // namespace lfd

@@ -1,0 +1,28 @@
+// What the arm is never asked to do unless the user insists (robustness.md, Robot gates). No safety function.
+#pragma once
+
+#include "lfdtools/cli/program.hpp"
+#include "lfdtools/io/demonstrations.hpp"
+#include "lfdtools/motion.hpp"
+#include "lfdtools/path.hpp"
+
+namespace lfd::cli {
+
+/// Limits beyond those of the robot file.
+struct ArmLimits {
+  double tcp_speed = 1.0;                  ///< [m/s]
+  std::optional<double> tcp_acceleration;  ///< [m/s^2]
+  double condition = 30;                   ///< refuse
+  double condition_warning = 17;
+};
+
+/// Declares the gates and the options that set their limits.
+void declare_arm_gates(Program& program, ArmLimits& limits);
+
+/// Judges a joint path gate by gate. @return false if there is no path to write (its gate was lifted)
+/// @throws Error(Fault::gate) gate.unreachable, joint_range, joint_step, joint_speed, joint_acceleration, tcp_speed,
+///         tcp_acceleration, condition, branch_change, midpoint; the place is the line of the worst sample
+bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
+           const ArmLimits& limits, Run& run);
+
+}  // namespace lfd::cli

@@ -1,0 +1,62 @@
+// Negative log evidence of the multivariate process and its gradient, paper eq. (18), Omega integrated or free.
+#pragma once
+
+#include "lfdtools/kernel.hpp"
+
+namespace lfd {
+
+enum class MeanType { zero, constant, linear };
+enum class OmegaRule {
+  integrated,  ///< Omega ~ inverse-Wishart(Psi, nu), integrated out
+  ml           ///< the paper's reading: Omega free, at its maximum S / n
+};
+
+/// Rows of the basis of an explicit mean: n x 0, n x 1 (ones) or n x (1+p) (ones, X).
+[[nodiscard]] Matrix mean_basis(MeanType mean, const Eigen::Ref<const Matrix>& X);
+
+/// What the evidence needs beside X, Y and the kernel.
+struct EvidenceSettings {
+  OmegaRule omega = OmegaRule::integrated;
+  MeanType mean = MeanType::zero;
+  Matrix psi;        ///< 1 x 1: psi times the identity; or d x d, positive definite [unit of Y squared]
+  double nu = 0;     ///< degrees of freedom of the inverse-Wishart, > d - 1
+  Vector row_noise;  ///< factor on the noise variance of each row, n, positive; empty: ones
+};
+
+/// -ln p(Y | X, theta) for Y ~ MN(M, K', Omega), K' = K + sigma_n^2 diag(row_noise), as a function of
+/// theta = (log_hyperparameters of the kernel, ln sigma_n^2). With S = (Y-M)^T K'^-1 (Y-M):
+///   integrated  nd/2 ln pi + d/2 ln|K'| + (n+nu)/2 ln|Psi+S| - nu/2 ln|Psi| - lnGamma_d((n+nu)/2) + lnGamma_d(nu/2)
+///   ml          nd/2 ln 2pi + d/2 ln|K'| + n/2 ln|S/n| + nd/2
+/// Both depend on Y only through Y Psi^-1 Y^T, so Y is turned once into at most n columns: an evaluation costs n^3
+/// whatever d is. The coefficients of an explicit mean are those of generalised least squares at each K': they make S
+/// smallest in the Loewner order, so they maximise either form, and the gradient needs no derivative of them (envelope
+/// theorem). An object holds its working memory: one a thread.
+class Evidence {
+ public:
+  /// @param X  n x p [m]   @param Y  n x d
+  /// @throws DataError [mvgp.mean_rank] if the rows do not determine the explicit mean;
+  ///         [mvgp.omega_unbounded] if Omega is free and the rows left by the mean are not more than d, or the outputs
+  ///         are linearly dependent
+  Evidence(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& Y, const Kernel& kernel,
+           const EvidenceSettings& settings);
+
+  [[nodiscard]] Eigen::Index size() const { return kernel_size_ + 1; }
+
+  /// Value at theta, and with it the gradient when a pointer is given. +inf if K' is not numerically positive definite.
+  double operator()(const Vector& theta, Vector* gradient = nullptr);
+
+ private:
+  bool solve(const Vector& theta);  // sets K_ to L, Z_ to L^-1 (Y - M); false: not positive definite
+
+  Kernel kernel_;
+  KernelMatrix kernel_matrix_;
+  Vector row_noise_;
+  Matrix Y_;  // n x r, r = min(n, d): Y Psi^-1/2 turned
+  Matrix H_;  // n x q, basis of the explicit mean
+  Eigen::Index kernel_size_, n_, d_;
+  bool integrated_;
+  double weight_, constant_;  // n + nu or n; terms without theta
+  Matrix K_, Z_, S_;          // working memory
+};
+
+}  // namespace lfd

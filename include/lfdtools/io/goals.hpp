@@ -1,0 +1,19 @@
+// Lists of goals: where a skill shall go.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lfdtools/io/csv.hpp"
+#include "lfdtools/skill.hpp"
+
+namespace lfd {
+
+/// Reads `[target,][teacher,]<signal...>[,start_<s>...][,duration]`, a row a goal.
+/// @param signals  columns of the positions, all needed
+/// @throws as CsvTable; DataError [goals.partial_start] if some but not all start columns are there,
+///         [goals.repeated_target], [goals.duration] unless positive
+[[nodiscard]] std::vector<Goal> read_goals(const std::string& name, const std::vector<std::string>& signals,
+                                           Messages& messages);
+
+}  // namespace lfd

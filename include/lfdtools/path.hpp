@@ -1,0 +1,65 @@
+// Joint path along a sequence of poses: branches and whole turns chosen for the path as a whole.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lfdtools/ur10.hpp"
+
+namespace lfd {
+
+struct PathOptions {
+  /// The arm's current joints, or any posture to start near to: of the starts from which a path without jumps exists,
+  /// the one nearest to it is taken (joint differences over speed limits, whole turns counted). Without a seed the
+  /// path's largest step, branch changes and length decide, then the smallest angles.
+  std::optional<Joints> seed;
+  bool respect_limits = true;         ///< keep every joint within its range; else only principal values at the start
+  double tolerance = 1e-9;            ///< of inverse kinematics, larger of metres and radians
+  double max_step = 0.5;              ///< a joint that moves further between two samples counts as a jump [rad]
+  double midpoint_tolerance = 0.005;  ///< allowed deviation of the hand midway between samples, larger of m and rad
+  /// Paths whose largest step is within this factor of the smallest possible count as equally good; branch changes,
+  /// then length decide between them. Without it a thousandth of a step would flip an elbow.
+  double step_slack = 1.1;
+};
+
+/// How a path came out.
+enum class PathStatus {
+  continuous,      ///< every pose reached, no jump
+  unreachable,     ///< a pose has no inverse kinematics; no joints
+  outside_limits,  ///< poses are reached, but no chain of solutions stays within the joint ranges; no joints
+  jump,            ///< the best path has a step over max_step; it is returned
+  deviates         ///< the hand leaves the path between two samples by more than midpoint_tolerance; it is returned
+};
+
+/// A joint path, or where and why there is none.
+struct JointPath {
+  PathStatus status = PathStatus::continuous;
+  Eigen::Index sample = 0;  ///< first sample where the status applies (jump, deviates: the end of the interval)
+  std::string reason;       ///< sentence for people; empty when continuous
+  std::vector<Eigen::Index> unreachable;  ///< every sample out of reach
+
+  Samples joints;                   ///< T x 6 [rad], whole turns included; 0 x 6 where there is no path
+  std::vector<int> branch;          ///< T, see branch_name
+  Vector residual;                  ///< T, larger of metres and radians
+  Vector condition;                 ///< T, condition number of the Jacobian
+  Vector midpoint_deviation;        ///< T, of the interval ending at the sample (0 for the first), larger of m and rad
+  double largest_step_ratio = 0.0;  ///< largest joint speed over its limit
+  int branch_changes = 0;           ///< samples whose branch differs from the one before
+};
+
+/// Joint angles along poses: the best way through the layered graph of all inverse kinematics solutions and all whole
+/// turns within the joint ranges; best_way in posture_graph.hpp says what best means, the largest |dq_j| / (v_j dt) of
+/// the path coming first. Where the wrist is singular, q6 follows the neighbours on both sides.
+/// @param flange  T >= 1 poses of the flange in the base
+/// @param times   T, strictly rising [s]
+/// @throws DataError [path.shape], [path.not_finite], [path.time_not_rising], [ur10.pose_not_rigid]
+/// @throws UsageError [path.options] if an option is out of its range
+[[nodiscard]] JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                                   const PathOptions& options = {});
+
+/// As above for one robot.
+[[nodiscard]] JointPath solve_path(const Robot& robot, const std::vector<Pose>& flange, const Vector& times,
+                                   const PathOptions& options = {});
+
+}  // namespace lfd

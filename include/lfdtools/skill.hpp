@@ -1,0 +1,124 @@
+// A skill: movement primitives whose weights follow the target, paper Table 1 and Sec. III-C.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lfdtools/dmp.hpp"
+#include "lfdtools/mvgp.hpp"
+#include "lfdtools/trajectory.hpp"
+
+namespace lfd {
+
+/// One training row: a primitive and where it comes from.
+struct SkillRow {
+  Labels labels;
+  Dmp primitive;
+
+  /// Input of the process: dP = goal - start, D [m].
+  [[nodiscard]] Vector change() const { return primitive.goal - primitive.start; }
+};
+
+/// Which components of dP speak for which weights.
+enum class SkillStructure {
+  automatic,  ///< the library's choice: `full`
+  axis,       ///< one model an axis from its own component, R -> R^N (Sec. III-C of the paper)
+  full,       ///< one model an axis from all of dP, R^D -> R^N (Table 1 of the paper)
+  joint       ///< one model for all axes, R^D -> R^(D N)
+};
+
+struct SkillOptions {
+  SkillStructure structure = SkillStructure::automatic;
+  /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means `axis`.
+  bool paper = false;
+  /// One term of this type in place of the default sum of terms.
+  std::optional<KernelType> kernel;
+  std::optional<MeanType> mean;  ///< zero if empty
+  OmegaRule omega = OmegaRule::integrated;
+  int starts = 5;
+  std::uint64_t seed = 1;
+  unsigned jobs = 1;
+};
+
+/// One process of a skill. Columns of its Y: by signal in `outputs`, then by basis.
+struct SkillModel {
+  std::vector<int> inputs;   ///< signals whose change it sees, from 0
+  std::vector<int> outputs;  ///< signals whose weights it gives, from 0
+  MvgpModel process;
+};
+
+/// tau = mean + coefficients . dP, kept inside `range`.
+struct DurationModel {
+  double mean = 1;         ///< at dP = 0 [s]
+  Vector coefficients;     ///< D [s/m]
+  double sd = 0;           ///< of a demonstration about the line [s]
+  double range[2] = {1, 1};  ///< shortest and longest demonstrated [s]
+
+  [[nodiscard]] double predict(const Vector& change) const;
+};
+
+struct Skill {
+  std::vector<std::string> columns;  ///< D signal names
+  DmpSettings dmp;
+  Vector start;              ///< mean start of the rows, D [m]
+  double start_spread = 0;   ///< largest distance of a row's start from `start` [m]
+  std::vector<Labels> rows;  ///< n
+  DurationModel duration;
+  std::vector<SkillModel> models;
+};
+
+/// Learns weights as a function of dP from rows that share their settings.
+/// @param columns  D signal names, as the rows' axes
+/// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every dP is the same; those of
+///         train_mvgp
+[[nodiscard]] Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                                const SkillOptions& options = {});
+
+/// A, N x N lower triangular, so that the Euclidean distance of rows w A is the root mean square distance [m] over one
+/// duration of the motions that weights w of one axis make (scale 1): A A^T = R^T R / T, with a floor of 1e-6 of the
+/// largest singular value of R so that directions which hardly move the hand keep an inverse.
+[[nodiscard]] Matrix trajectory_metric(const DmpSettings& settings);
+
+/// The demonstrated region: for each signal the interval that goal - start of the rows spans, widened at both ends by a
+/// tenth of its length and at least 10 mm.
+/// @return how far dP lies outside, the largest over the signals [m]; 0 inside
+[[nodiscard]] double region_excess(const Skill& skill, const Vector& change);
+
+/// Weights for one target.
+struct WeightPrediction {
+  Matrix mean;  ///< D x N
+  Matrix sd;    ///< D x N, latent: of the intention, without the noise of a demonstration
+};
+
+/// Where to go.
+struct Goal {
+  Labels labels;
+  Vector position;                 ///< D [m]
+  std::optional<Vector> start;     ///< D [m]; the skill's own if empty
+  std::optional<double> duration;  ///< tau [s]; the skill's own if empty
+};
+
+/// Predictions of one skill; the matrices are factorised once.
+class SkillPredictor {
+ public:
+  explicit SkillPredictor(Skill skill);
+
+  [[nodiscard]] const Skill& skill() const { return skill_; }
+  /// @param change  dP, D [m]
+  [[nodiscard]] WeightPrediction weights(const Vector& change) const;
+  /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3).
+  [[nodiscard]] Dmp primitive(const Goal& goal) const;
+
+ private:
+  Skill skill_;
+  std::vector<MvgpPredictor> predictors_;
+};
+
+/// The motion of a primitive on times 0, dt, 2 dt, ... tau and on until it rests on its goal (settle_time). The last sample
+/// is the first of the grid that rests.
+/// @param dt  [s]; tau / 200 if empty
+/// @throws DataError [skill.dt] if that makes over 10^7 samples; those of settle_time
+[[nodiscard]] Motion generate(const Dmp& primitive, std::optional<double> dt = {});
+
+}  // namespace lfd

@@ -1,0 +1,72 @@
+#include "lfdtools/cli/run.hpp"
+
+#include <fmt/format.h>
+
+#include "lfdtools/io/number.hpp"
+
+namespace lfd::cli {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string line;
+  for (const auto& word : words) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+std::string quoted(const std::string& cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string text = "\"";
+  for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + "\"";
+}
+
+}  // namespace
+
+Run::Run(CommonOptions options, Messages& messages, Provenance provenance)
+    : options_(std::move(options)), messages_(messages), provenance_(std::move(provenance)) {}
+
+JsonOptions Run::json_options() const {
+  JsonOptions json;
+  json.strict = options_.strict;
+  return json;
+}
+
+Output& Run::output() {
+  if (!output_) output_ = std::make_unique<Output>(options_.output);
+  return *output_;
+}
+
+Provenance Run::provenance(std::string input_sha256) const {
+  Provenance entry = provenance_;
+  entry.input_sha256 = std::move(input_sha256);
+  return entry;
+}
+
+void Run::refuse(std::string_view gate, const std::string& text, const Place& place) {
+  const std::string id = fmt::format("gate.{}", gate);
+  if (!options_.all_lifted && !options_.lifted.contains(std::string(gate))) {
+    throw Error(Fault::gate, id, fmt::format("{}; --no-gate {} lets it pass", text, gate), place);
+  }
+  messages_.warning(id, fmt::format("{} (gate lifted)", text), place);
+}
+
+void Run::detail(std::string_view id, const std::string& text) {
+  if (options_.verbose) messages_.note(id, text);
+}
+
+void Run::figure(const std::string& name, double value) { figures_.emplace_back(name, value); }
+
+void Run::finish() {
+  if (output_) output_->finish();
+  if (options_.summary.empty()) return;
+  std::string header = "program,version,inputs,arguments";
+  std::string row = fmt::format("{},{},{},{}", provenance_.program, provenance_.version, quoted(joined(options_.inputs)),
+                                quoted(joined(provenance_.arguments)));
+  for (const auto& [name, value] : figures_) {
+    header += "," + name;
+    row += "," + number_text(value);
+  }
+  append_record(options_.summary, header + "\n", row + "\n");
+}
+
+}  // namespace lfd::cli

@@ -1,0 +1,190 @@
+#include "lfdtools/evidence.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lfdtools/error.hpp"
+#include "lfdtools/gaussian.hpp"
+
+namespace lfd {
+
+namespace {
+
+/// ln Gamma_d(a), the multivariate gamma function.
+double log_multivariate_gamma(Eigen::Index d, double a) {
+  const double D = static_cast<double>(d);
+  double sum = D * (D - 1) / 4 * std::log(std::numbers::pi);
+  for (Eigen::Index j = 0; j < d; ++j) sum += std::lgamma(a - 0.5 * static_cast<double>(j));
+  return sum;
+}
+
+void refuse_undetermined_mean(MeanType mean, const Matrix& H) {
+  if (H.cols() == 0 || Eigen::ColPivHouseholderQR<Matrix>(H).rank() == H.cols()) return;
+  throw DataError("mvgp.mean_rank",
+                  mean == MeanType::linear
+                      ? "the rows do not span enough directions for an explicit linear mean; use a linear kernel term "
+                        "instead, which has a proper prior"
+                      : "an explicit mean needs at least one row");
+}
+
+/// Leaves of the columns of Z what is outside the span of the columns of H (Gram-Schmidt, each column twice).
+void remove_span(Matrix H, Matrix& Z) {
+  for (Eigen::Index j = 0; j < H.cols(); ++j) {
+    for (int pass = 0; pass < 2; ++pass) H.col(j) -= H.leftCols(j) * (H.leftCols(j).transpose() * H.col(j)).eval();
+    H.col(j).normalize();
+    Z -= H.col(j) * (H.col(j).transpose() * Z).eval();
+  }
+}
+
+/// Lower Cholesky factor in place of the lower triangle. False if the matrix is not numerically positive definite.
+bool factorize(Matrix& A) {
+  const Eigen::LLT<Eigen::Ref<Matrix>> llt(A);
+  return llt.info() == Eigen::Success && A.diagonal().allFinite() && (A.diagonal().array() > 0).all();
+}
+
+/// L^-1 in place of the lower triangle: [A 0; B C]^-1 = [A^-1 0; -C^-1 B A^-1 C^-1]. Halving leaves nearly all work to
+/// matrix products and, unlike solving for the columns of the identity, never touches the zeros.
+void invert_lower(Eigen::Ref<Matrix> L) {
+  const Eigen::Index n = L.rows();
+  if (n <= 16) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      L(j, j) = 1 / L(j, j);
+      for (Eigen::Index i = j + 1; i < n; ++i) {
+        L(i, j) = -L.row(i).segment(j, i - j).dot(L.col(j).segment(j, i - j)) / L(i, i);
+      }
+    }
+    return;
+  }
+  const Eigen::Index h = n / 2;
+  auto A = L.topLeftCorner(h, h);
+  auto B = L.bottomLeftCorner(n - h, h);
+  auto C = L.bottomRightCorner(n - h, n - h);
+  invert_lower(A);
+  C.triangularView<Eigen::Lower>().solveInPlace(B);
+  B = -(B * A.triangularView<Eigen::Lower>());
+  invert_lower(C);
+}
+
+/// L^T L in place of the lower triangle: [A 0; B C] gives [A^T A + B^T B, .; C^T B, C^T C].
+void multiply_transposed_by_itself(Eigen::Ref<Matrix> L) {
+  const Eigen::Index n = L.rows();
+  if (n <= 16) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = j; i < n; ++i) L(i, j) = L.col(i).tail(n - i).dot(L.col(j).tail(n - i));
+    }
+    return;
+  }
+  const Eigen::Index h = n / 2;
+  auto A = L.topLeftCorner(h, h);
+  auto B = L.bottomLeftCorner(n - h, h);
+  auto C = L.bottomRightCorner(n - h, n - h);
+  multiply_transposed_by_itself(A);
+  A.selfadjointView<Eigen::Lower>().rankUpdate(B.transpose());
+  B = C.triangularView<Eigen::Lower>().transpose() * B;
+  multiply_transposed_by_itself(C);
+}
+
+}  // namespace
+
+Matrix mean_basis(MeanType mean, const Eigen::Ref<const Matrix>& X) {
+  if (mean == MeanType::zero) return Matrix(X.rows(), 0);
+  Matrix H = Matrix::Ones(X.rows(), mean == MeanType::constant ? 1 : 1 + X.cols());
+  if (mean == MeanType::linear) H.rightCols(X.cols()) = X;
+  return H;
+}
+
+Evidence::Evidence(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& Y, const Kernel& kernel,
+                   const EvidenceSettings& settings)
+    : kernel_(kernel),
+      kernel_matrix_(X, kernel),
+      row_noise_(settings.row_noise.size() > 0 ? settings.row_noise : Vector::Ones(X.rows())),
+      H_(mean_basis(settings.mean, X)),
+      kernel_size_(log_hyperparameters(kernel).size()),
+      n_(X.rows()),
+      d_(Y.cols()),
+      integrated_(settings.omega == OmegaRule::integrated) {
+  refuse_undetermined_mean(settings.mean, H_);
+  if (!integrated_ && n_ - H_.cols() <= d_) {
+    throw DataError("mvgp.omega_unbounded",
+                    "a free Omega needs more rows than outputs: the likelihood grows without bound as the empty "
+                    "directions of Omega shrink; use the integrated Omega");
+  }
+
+  const double n = static_cast<double>(n_);
+  const double d = static_cast<double>(d_);
+  const Matrix psi = settings.psi.size() == 1 ? Matrix(Matrix::Identity(d_, d_) * settings.psi(0, 0)) : settings.psi;
+  const Matrix L_psi = cholesky(psi);
+  const double log_psi = log_determinant_from_cholesky(L_psi);
+  if (integrated_) {
+    weight_ = n + settings.nu;
+    constant_ = n * d / 2 * std::log(std::numbers::pi) + n / 2 * log_psi - log_multivariate_gamma(d_, weight_ / 2) +
+                log_multivariate_gamma(d_, settings.nu / 2);
+  } else {
+    weight_ = n;
+    constant_ = n * d / 2 * (log_2pi + 1 - std::log(n)) + n / 2 * log_psi;
+  }
+
+  // Y Psi^-1/2, and for n < d a factor of n columns with the same Gram matrix: Y^T = Q R P^T gives P R^T.
+  Y_ = L_psi.triangularView<Eigen::Lower>().solve(Y.transpose()).transpose();
+  if (n_ < d_) {
+    const Eigen::ColPivHouseholderQR<Matrix> qr(Y_.transpose());
+    Y_ = qr.colsPermutation() * Matrix(qr.matrixQR().topRows(n_).triangularView<Eigen::Upper>()).transpose();
+  }
+  if (!integrated_) {
+    Matrix rest = Y_;
+    remove_span(H_, rest);
+    if (Eigen::ColPivHouseholderQR<Matrix>(rest).rank() < d_) {
+      throw DataError("mvgp.omega_unbounded",
+                      "a free Omega needs linearly independent outputs: the likelihood grows without bound as the "
+                      "empty directions of Omega shrink; use the integrated Omega");
+    }
+  }
+}
+
+bool Evidence::solve(const Vector& theta) {
+  if (!theta.allFinite()) return false;
+  kernel_matrix_.evaluate(with_log_hyperparameters(kernel_, theta.head(kernel_size_)), K_);
+  K_.diagonal() += std::exp(theta(kernel_size_)) * row_noise_;
+  if (!factorize(K_)) return false;
+
+  Z_ = Y_;
+  K_.triangularView<Eigen::Lower>().solveInPlace(Z_);
+  if (H_.cols() > 0) {
+    // L^-1 (Y - H beta) at the generalised least squares beta is what is left of L^-1 Y outside the span of L^-1 H.
+    remove_span(K_.triangularView<Eigen::Lower>().solve(H_), Z_);
+  }
+  return Z_.allFinite();
+}
+
+double Evidence::operator()(const Vector& theta, Vector* gradient) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!solve(theta)) return infinity;
+  const double d = static_cast<double>(d_);
+  const Eigen::Index r = Z_.cols();
+  S_.setZero(r, r);
+  S_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.transpose());
+  if (integrated_) S_.diagonal().array() += 1.0;
+  if (!factorize(S_)) return infinity;
+  const double value = constant_ + d * K_.diagonal().array().log().sum() + weight_ * S_.diagonal().array().log().sum();
+  if (!std::isfinite(value)) return infinity;
+  if (gradient == nullptr) return value;
+
+  // dvalue/dK' = d/2 K'^-1 - weight/2 B B^T with B B^T = K'^-1 R (I + S)^-1 R^T K'^-1, symmetric.
+  S_.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Z_);
+  K_.transpose().triangularView<Eigen::Upper>().solveInPlace(Z_);
+  invert_lower(K_);
+  multiply_transposed_by_itself(K_);
+  K_.triangularView<Eigen::Lower>() *= d / 2;
+  K_.selfadjointView<Eigen::Lower>().rankUpdate(Z_, -weight_ / 2);
+  gradient->resize(size());
+  kernel_matrix_.gradient(K_, gradient->head(kernel_size_));
+  (*gradient)(kernel_size_) = std::exp(theta(kernel_size_)) * K_.diagonal().dot(row_noise_);
+  return value;
+  return value;
+}
+
+}  // namespace lfd

@@ -1,0 +1,51 @@
+#include "lfdtools/io/goals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "lfdtools/io/labelled_table.hpp"
+
+namespace lfd {
+
+std::vector<Goal> read_goals(const std::string& name, const std::vector<std::string>& signals, Messages& messages) {
+  std::vector<Input> inputs;
+  inputs.emplace_back(name);
+  const CsvTable table(std::move(inputs), messages, {.grouped = false});
+  const auto starts = prefixed("start_", signals);
+  const auto start_columns = std::count_if(starts.begin(), starts.end(), [&](const auto& s) { return table.has(s); });
+  if (start_columns != 0 && start_columns != static_cast<std::ptrdiff_t>(starts.size())) {
+    throw DataError("goals.partial_start", "some signals have a start_ column and others have none", {name, 1, 0, ""});
+  }
+  const bool with_start = start_columns > 0;
+  const bool with_duration = table.has("duration");
+  auto columns = signals;
+  if (with_start) columns = joined(columns, starts);
+  if (with_duration) columns.emplace_back("duration");
+  const NumericBlock block = table.read_group(0, columns);
+  const auto targets = table.has("target") ? table.read_text(0, "target") : std::vector<std::string>();
+  const auto teachers = table.has("teacher") ? table.read_text(0, "teacher") : std::vector<std::string>();
+
+  std::vector<Goal> goals(static_cast<std::size_t>(block.values.rows()));
+  std::set<std::pair<std::string, std::string>> seen;
+  const auto D = static_cast<Eigen::Index>(signals.size());
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    Goal& goal = goals[i];
+    if (!targets.empty()) goal.labels.target = targets[i];
+    if (!teachers.empty()) goal.labels.teacher = teachers[i];
+    if (!targets.empty() && !seen.emplace(targets[i], teachers.empty() ? "" : teachers[i]).second) {
+      throw DataError("goals.repeated_target", fmt::format("target {} stands twice", targets[i]), block.place(row));
+    }
+    goal.position = block.values.row(row).head(D).transpose();
+    if (with_start) goal.start = block.values.row(row).segment(D, D).transpose();
+    if (with_duration) {
+      goal.duration = block.values(row, block.values.cols() - 1);
+      if (!(*goal.duration > 0)) throw DataError("goals.duration", "a duration is not positive", block.place(row));
+    }
+  }
+  return goals;
+}
+
+}  // namespace lfd

@@ -1,0 +1,225 @@
+#include "lfdtools/io/skill_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "json_check.hpp"
+#include "lfdtools/io/dmp_file.hpp"
+
+namespace lfd {
+namespace {
+
+
+constexpr std::array<std::pair<MeanType, std::string_view>, 3> mean_names{
+    {{MeanType::zero, "zero"}, {MeanType::constant, "constant"}, {MeanType::linear, "linear"}}};
+constexpr std::array<std::pair<OmegaRule, std::string_view>, 2> omega_names{
+    {{OmegaRule::integrated, "integrated"}, {OmegaRule::ml, "ml"}}};
+
+template <typename Value, std::size_t n>
+std::string_view name_of(const std::array<std::pair<Value, std::string_view>, n>& names, Value value) {
+  return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.first == value; })->second;
+}
+
+template <typename Value, std::size_t n>
+Value value_of(const std::array<std::pair<Value, std::string_view>, n>& names, const JsonView& view) {
+  const std::string name = view.string();
+  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == name; });
+  if (found == names.end()) view.fail("skill.unknown_name", fmt::format("'{}' is not known here", name));
+  return found->first;
+}
+
+/// Positions of names in a list of names.
+std::vector<int> indices(const JsonView& view, const std::vector<std::string>& among) {
+  std::vector<int> result;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::string name = view.at(i).string();
+    const auto found = std::find(among.begin(), among.end(), name);
+    if (found == among.end()) view.at(i).fail("skill.unknown_signal", fmt::format("there is no signal '{}' here", name));
+    const int index = static_cast<int>(found - among.begin());
+    if (std::find(result.begin(), result.end(), index) != result.end()) {
+      view.at(i).fail("skill.repeated_signal", fmt::format("signal '{}' stands twice", name));
+    }
+    result.push_back(index);
+  }
+  return result;
+}
+
+std::vector<std::string> names(const std::vector<int>& positions, const std::vector<std::string>& among) {
+  std::vector<std::string> result;
+  for (const int position : positions) result.push_back(among[static_cast<std::size_t>(position)]);
+  return result;
+}
+
+KernelTerm read_term(const JsonView& view, const std::vector<std::string>& inputs, bool term_of_sum) {
+  KernelTerm term;
+  checked(view.at("type"), [&] { term.type = kernel_type_from_name(view.at("type").string()); });
+  term.variance = view.at("variance").positive();
+  if (term_of_sum || view.has("inputs")) {
+    term.inputs = indices(view.at("inputs"), inputs);
+  } else if (term.type != KernelType::constant) {
+    for (int j = 0; j < static_cast<int>(inputs.size()); ++j) term.inputs.push_back(j);
+  }
+  term.length_scales = view.at("length_scales").vector(static_cast<Eigen::Index>(term.inputs.size()));
+  return term;
+}
+
+Kernel read_kernel(const JsonView& view, const std::vector<std::string>& inputs) {
+  Kernel kernel;
+  if (view.at("type").string() == "sum") {
+    const JsonView terms = view.at("terms");
+    for (std::size_t i = 0; i < terms.size(); ++i) kernel.terms.push_back(read_term(terms.at(i), inputs, true));
+  } else {
+    kernel.terms.push_back(read_term(view, inputs, false));
+  }
+  checked(view, [&] { check_kernel(kernel, static_cast<int>(inputs.size())); });
+  return kernel;
+}
+
+SkillModel read_model(const JsonView& view, const std::vector<std::string>& columns, Eigen::Index n, Eigen::Index N) {
+  view.only({"inputs", "outputs", "kernel", "noise_variance", "noise", "mean", "X", "Y", "output_transform", "omega_rule",
+             "omega", "nu", "psi", "log_marginal_likelihood"});
+  SkillModel model;
+  model.inputs = indices(view.at("inputs"), columns);
+  model.outputs = indices(view.at("outputs"), columns);
+  const auto p = static_cast<Eigen::Index>(model.inputs.size());
+  const auto d = static_cast<Eigen::Index>(model.outputs.size()) * N;
+  if (p == 0) view.at("inputs").fail("skill.shape", "a model needs an input");
+  if (d == 0) view.at("outputs").fail("skill.shape", "a model needs an output");
+  MvgpModel& process = model.process;
+  process.kernel = read_kernel(view.at("kernel"), names(model.inputs, columns));
+  process.noise_variance = view.at("noise_variance").number(0, 1e300);
+  if (const auto noise = view.find("noise")) process.noise = noise->vector(n);
+  const JsonView mean = view.at("mean");
+  process.mean = value_of(mean_names, mean.at("type"));
+  const Eigen::Index rows = process.mean == MeanType::zero ? 0 : process.mean == MeanType::constant ? 1 : 1 + p;
+  process.coefficients = rows == 0 ? Matrix(0, d) : mean.at("coefficients").matrix(rows, d);
+  process.X = view.at("X").matrix(n, p);
+  process.Y = view.at("Y").matrix(n, d);
+  if (const auto transform = view.find("output_transform")) process.output_transform = transform->matrix(d, d);
+  if (const auto rule = view.find("omega_rule")) process.omega_rule = value_of(omega_names, *rule);
+  process.omega = view.at("omega").matrix(d, d);
+  if (process.omega_rule == OmegaRule::integrated) {
+    process.nu = view.at("nu").number(0, 1e300);
+    const JsonView psi = view.at("psi");
+    process.psi = psi.is_array() ? psi.matrix(d, d) : Matrix::Constant(1, 1, psi.positive());
+  }
+  process.log_marginal_likelihood = view.at("log_marginal_likelihood").number();
+  checked(view, [&] { (void)MvgpPredictor(process); });
+  return model;
+}
+
+void write_term(JsonWriter& json, const KernelTerm& term, const std::vector<std::string>& inputs, bool term_of_sum) {
+  json.begin_object().member("type", kernel_type_name(term.type)).member("variance", term.variance);
+  if (term_of_sum) json.member("inputs", names(term.inputs, inputs));
+  json.key("length_scales").vector(term.length_scales).end_object();
+}
+
+void write_model(JsonWriter& json, const SkillModel& model, const std::vector<std::string>& columns) {
+  const MvgpModel& process = model.process;
+  const auto inputs = names(model.inputs, columns);
+  json.begin_object().member("inputs", inputs).member("outputs", names(model.outputs, columns));
+  json.key("kernel");
+  if (process.kernel.terms.size() == 1) {
+    write_term(json, process.kernel.terms.front(), inputs, false);
+  } else {
+    json.begin_object().member("type", "sum").key("terms").begin_array();
+    for (const auto& term : process.kernel.terms) write_term(json, term, inputs, true);
+    json.end_array().end_object();
+  }
+  json.member("noise_variance", process.noise_variance);
+  if (process.noise.size() > 0) json.member("noise", process.noise);
+  json.key("mean").begin_object().member("type", name_of(mean_names, process.mean));
+  json.key("coefficients").matrix(process.coefficients).end_object();
+  json.member("X", process.X).member("Y", process.Y).key("output_transform");
+  if (process.output_transform.size() > 0) {
+    json.matrix(process.output_transform);
+  } else {
+    json.null();
+  }
+  json.member("omega_rule", name_of(omega_names, process.omega_rule)).member("omega", process.omega);
+  if (process.omega_rule == OmegaRule::integrated) {
+    json.member("nu", process.nu).key("psi");
+    if (process.psi.size() == 1) {
+      json.number(process.psi(0, 0));
+    } else {
+      json.matrix(process.psi);
+    }
+  }
+  json.member("log_marginal_likelihood", process.log_marginal_likelihood).end_object();
+}
+
+}  // namespace
+
+SkillFile read_skill(const JsonDocument& document) {
+  SkillFile file;
+  file.header = read_header(document, skill_format);
+  const JsonView root = document.root();
+  root.only({"format", "version", "columns", "target", "demo", "teacher", "provenance", "dmp", "start", "start_spread",
+             "rows", "duration", "models"});
+  Skill& skill = file.skill;
+  skill.columns = file.header.columns;
+  const auto D = static_cast<Eigen::Index>(skill.columns.size());
+  skill.dmp = read_dmp_settings(root.at("dmp"));
+  skill.start = root.at("start").vector(D);
+  if (const auto spread = root.find("start_spread")) skill.start_spread = spread->number(0, 1e300);
+  const JsonView rows = root.at("rows");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Labels labels;
+    if (const auto target = rows.at(i).find("target")) labels.target = target->label();
+    if (const auto teacher = rows.at(i).find("teacher")) labels.teacher = teacher->label();
+    if (const auto demo = rows.at(i).find("demo")) labels.demo = demo->label();
+    skill.rows.push_back(labels);
+  }
+  const JsonView duration = root.at("duration");
+  skill.duration.mean = duration.at("mean").number();
+  skill.duration.coefficients = duration.at("coefficients").vector(D);
+  if (const auto sd = duration.find("sd")) skill.duration.sd = sd->number(0, 1e300);
+  const Vector range = duration.at("range").vector(2);
+  if (!(range[0] > 0) || range[1] < range[0]) {
+    duration.at("range").fail("skill.duration", "the range of durations is not positive and rising");
+  }
+  std::copy_n(range.data(), 2, skill.duration.range);
+  const JsonView models = root.at("models");
+  std::vector<int> given(skill.columns.size(), 0);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    skill.models.push_back(read_model(models.at(i), skill.columns, static_cast<Eigen::Index>(skill.rows.size()),
+                                      skill.dmp.bases()));
+    for (const int output : skill.models.back().outputs) ++given[static_cast<std::size_t>(output)];
+  }
+  for (std::size_t j = 0; j < given.size(); ++j) {
+    if (given[j] != 1) {
+      models.fail("skill.outputs", fmt::format("signal '{}' is the output of {} models", skill.columns[j], given[j]));
+    }
+  }
+  return file;
+}
+
+void write_skill(const SkillFile& file, Output& out) {
+  const Skill& skill = file.skill;
+  JsonWriter json;
+  write_header(json, skill_format, file.header);
+  json.key("dmp").begin_object();
+  write_dmp_settings(json, skill.dmp);
+  json.end_object();
+  json.member("start", skill.start).member("start_spread", skill.start_spread).key("rows").begin_array();
+  for (const auto& row : skill.rows) {
+    json.begin_object();
+    if (row.target) json.member("target", *row.target);
+    if (row.demo) json.member("demo", *row.demo);
+    if (row.teacher) json.member("teacher", *row.teacher);
+    json.end_object();
+  }
+  json.end_array().key("duration").begin_object().member("mean", skill.duration.mean);
+  json.member("coefficients", skill.duration.coefficients).member("sd", skill.duration.sd);
+  json.key("range").begin_array().number(skill.duration.range[0]).number(skill.duration.range[1]).end_array();
+  json.end_object().key("models").begin_array();
+  for (const auto& model : skill.models) write_model(json, model, skill.columns);
+  json.end_array();
+  write_provenance(json, file.header);
+  json.write_line(out);
+}
+
+}  // namespace lfd

@@ -1,0 +1,135 @@
+// Checks of the training data, and the model fields that follow from data and hyperparameters.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "lfdtools/error.hpp"
+#include "lfdtools/hyperparameters.hpp"
+#include "lfdtools/mvgp.hpp"
+
+namespace lfd {
+
+namespace {
+
+/// Length scales of linear terms: one for all directions, so that the variance is the prior share of a slope that knows
+/// no preferred direction.
+void scale_linear_terms(Kernel& kernel, const Matrix& X) {
+  for (auto& term : kernel.terms) {
+    if (term.type != KernelType::linear) continue;
+    double sum = 0;
+    for (const int j : term.inputs) sum += X.col(j).squaredNorm();
+    const double l = std::sqrt(sum / static_cast<double>(X.rows()));
+    term.length_scales.setConstant(static_cast<Eigen::Index>(term.inputs.size()), l > 0 ? l : 1.0);
+  }
+}
+
+void check_arguments(const Matrix& X, const Matrix& W, const Matrix& A, const MvgpOptions& options) {
+  if (X.rows() == 0) throw DataError("mvgp.no_rows", "there are no rows to train on");
+  if (X.cols() == 0 || W.cols() == 0 || W.rows() != X.rows()) {
+    throw DataError("mvgp.shape", "inputs and weights must have columns, and the same number of rows");
+  }
+  if (!X.allFinite() || !W.allFinite() || !A.allFinite()) {
+    throw DataError("mvgp.not_finite", "inputs, weights or transform have an entry that is not a finite number");
+  }
+  const Eigen::Index d = W.cols();
+  if (A.size() > 0 && (A.rows() != d || A.cols() != d || !(Eigen::PartialPivLU<Matrix>(A).rcond() > 1e-14))) {
+    throw DataError("mvgp.bad_transform", "the output transform is not an invertible d x d matrix");
+  }
+  const auto& psi = options.psi;
+  Matrix unused;
+  const bool scalar = psi.size() == 1 && std::isfinite(psi(0, 0)) && psi(0, 0) > 0;
+  const bool full = psi.rows() == d && psi.cols() == d && try_cholesky(psi, unused);
+  if (psi.size() > 0 && !scalar && !full) {
+    throw DataError("mvgp.bad_prior", "psi is neither a positive number nor a positive definite d x d matrix");
+  }
+  if (!(options.nu == 0 || options.nu > static_cast<double>(d) - 1) || !std::isfinite(options.nu)) {
+    throw DataError("mvgp.bad_prior", "nu must be greater than d - 1");
+  }
+  const auto& noise = options.row_noise;
+  if (noise.size() > 0 && (noise.size() != X.rows() || !noise.allFinite() || (noise.array() <= 0).any())) {
+    throw DataError("mvgp.shape", "row noise needs one positive factor a row");
+  }
+  if (!std::isfinite(options.noise_variance) || options.noise_variance <= 0) {
+    throw DataError("mvgp.bad_prior", "the noise variance is not a positive number");
+  }
+}
+
+/// Psi = psi I with psi the mean square of Y, about its column means if an explicit mean takes those.
+Matrix psi_from_data(const Matrix& Y, MeanType mean) {
+  constexpr double smallest = 1e-18;  // (1 nm)^2: outputs that are all zero still get a proper prior
+  double psi = Y.array().square().mean();
+  if (mean != MeanType::zero) psi = (Y.rowwise() - Y.colwise().mean()).array().square().mean();
+  return Matrix::Constant(1, 1, std::max(psi, smallest));
+}
+
+/// Fields that follow from data and hyperparameters: coefficients, Omega, evidence.
+void complete(MvgpModel& model) {
+  const Matrix L = cholesky(noisy_covariance(model));
+  const double n = static_cast<double>(model.Y.rows());
+  const Eigen::Index d = model.Y.cols();
+  Matrix residual = model.Y;
+  const Matrix H = mean_basis(model.mean, model.X);
+  model.coefficients = Matrix(0, d);
+  if (H.cols() > 0) {  // generalised least squares
+    const Matrix KiH = cholesky_solve(L, H);
+    model.coefficients = cholesky_solve(cholesky(H.transpose() * KiH), KiH.transpose() * model.Y);
+    residual -= H * model.coefficients;
+  }
+  const Matrix Z = L.triangularView<Eigen::Lower>().solve(residual);
+  Matrix S = Z.transpose() * Z;
+  if (model.omega_rule == OmegaRule::ml) {
+    model.omega = S / n;
+  } else {
+    S += model.psi.size() == 1 ? Matrix(Matrix::Identity(d, d) * model.psi(0, 0)) : model.psi;
+    model.omega = S / (n + model.nu - static_cast<double>(d) - 1);
+  }
+  model.log_marginal_likelihood = log_evidence(model);
+}
+
+}  // namespace
+
+MvgpOptions paper_mvgp_options(int p) {
+  MvgpOptions options;
+  options.kernel = se_ard_kernel(p);
+  return options;
+}
+
+MvgpOptions default_mvgp_options(int p) {
+  MvgpOptions options;
+  options.kernel = sum_kernel(p);
+  options.length_scale = {1.0, 1.0};
+  options.variance = {0.3, 2.0};
+  options.noise = {0.03, 2.0};
+  return options;
+}
+
+MvgpModel train_mvgp(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& W, const Matrix& A,
+                     const MvgpOptions& options) {
+  check_arguments(X, W, A, options);
+  MvgpModel model;
+  model.X = X;
+  model.Y = A.size() > 0 ? Matrix(W * A) : Matrix(W);
+  model.output_transform = A;
+  model.kernel = options.kernel.terms.empty() ? sum_kernel(static_cast<int>(X.cols())) : options.kernel;
+  check_kernel(model.kernel, static_cast<int>(X.cols()));
+  model.mean = options.mean;
+  model.omega_rule = options.omega;
+  model.noise_variance = options.noise_variance;
+  if (options.omega == OmegaRule::integrated) {
+    model.psi = options.psi.size() > 0 ? options.psi : psi_from_data(model.Y, options.mean);
+    model.nu = options.nu > 0 ? options.nu : static_cast<double>(W.cols()) + 2;
+  }
+  if (options.optimise) {
+    scale_linear_terms(model.kernel, model.X);
+    const Matrix psi = model.psi.size() > 0 ? model.psi : psi_from_data(model.Y, options.mean);
+    const EvidenceSettings settings{options.omega, options.mean, psi, model.nu, options.row_noise};
+    const Vector theta = hyperparameters_of_maximum_evidence(model.X, model.Y, model.kernel, settings, options);
+    model.kernel = with_log_hyperparameters(model.kernel, theta.head(theta.size() - 1));
+    model.noise_variance = std::exp(theta(theta.size() - 1));
+  }
+  if (options.row_noise.size() > 0) model.noise = model.noise_variance * options.row_noise;
+  complete(model);
+  return model;
+}
+
+}  // namespace lfd

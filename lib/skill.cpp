@@ -1,0 +1,218 @@
+#include "lfdtools/skill.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lfdtools/error.hpp"
+
+namespace lfd {
+namespace {
+
+Matrix changes(const std::vector<SkillRow>& rows) {
+  Matrix X(static_cast<Eigen::Index>(rows.size()), rows.front().primitive.dimensions());
+  for (std::size_t i = 0; i < rows.size(); ++i) X.row(static_cast<Eigen::Index>(i)) = rows[i].change().transpose();
+  return X;
+}
+
+void check_rows(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows) {
+  if (rows.size() < 2) throw DataError("skill.too_few_rows", "a skill needs primitives of at least two targets");
+  const Dmp& first = rows.front().primitive;
+  for (const auto& row : rows) {
+    check(row.primitive);
+    if (row.primitive.dimensions() != static_cast<Eigen::Index>(columns.size()) ||
+        !(row.primitive.settings == first.settings)) {
+      throw DataError("skill.mixed_settings",
+                      "primitives of different columns, scaling, alpha_z, beta_z, alpha_x, centers or widths make no "
+                      "skill together (" + describe(row.labels) + " differs from " + describe(rows.front().labels) + ")");
+    }
+  }
+  const Matrix X = changes(rows);
+  const Eigen::RowVectorXd first_row = X.row(0);
+  if ((X.rowwise() - first_row).rowwise().norm().maxCoeff() < 1e-6) {
+    throw DataError("skill.one_target", "every primitive has the same goal - start: nothing to generalise from");
+  }
+}
+
+std::vector<SkillModel> structure(SkillStructure wanted, bool paper, int D) {
+  if (wanted == SkillStructure::automatic) wanted = paper ? SkillStructure::axis : SkillStructure::full;
+  std::vector<int> all(static_cast<std::size_t>(D));
+  for (int j = 0; j < D; ++j) all[static_cast<std::size_t>(j)] = j;
+  std::vector<SkillModel> models;
+  if (wanted == SkillStructure::joint) {
+    models.push_back({all, all, {}});
+    return models;
+  }
+  for (int j = 0; j < D; ++j) {
+    models.push_back({wanted == SkillStructure::axis ? std::vector<int>{j} : all, {j}, {}});
+  }
+  return models;
+}
+
+MvgpOptions process_options(const SkillOptions& options, int p) {
+  MvgpOptions process = options.paper ? paper_mvgp_options(p) : default_mvgp_options(p);
+  if (options.kernel) {
+    process.kernel = se_ard_kernel(p);
+    process.kernel.terms.front().type = *options.kernel;
+  }
+  if (options.mean) process.mean = *options.mean;
+  process.omega = options.omega;
+  process.starts = options.starts;
+  process.seed = options.seed;
+  process.jobs = options.jobs;
+  return process;
+}
+
+/// The line through the durations, with a proper prior: the posterior mean of constant + linear kernel terms is a line, so
+/// its values at 0 and at the unit vectors give the coefficients.
+DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptions& options) {
+  const Matrix X = changes(rows);
+  Matrix tau(X.rows(), 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) tau(static_cast<Eigen::Index>(i), 0) = rows[i].primitive.tau;
+  DurationModel model;
+  model.range[0] = tau.minCoeff();
+  model.range[1] = tau.maxCoeff();
+  MvgpOptions process = default_mvgp_options(static_cast<int>(X.cols()));
+  process.kernel.terms.resize(2);  // constant, linear
+  process.starts = 1;
+  process.seed = options.seed;
+  const MvgpPredictor line(train_mvgp(X, tau, {}, process));
+  model.mean = line.predict(Vector::Zero(X.cols())).mean[0];
+  model.coefficients.resize(X.cols());
+  for (Eigen::Index j = 0; j < X.cols(); ++j) {
+    model.coefficients[j] = line.predict(Vector::Unit(X.cols(), j)).mean[0] - model.mean;
+  }
+  const Vector residual = tau - ((X * model.coefficients).array() + model.mean).matrix();
+  model.sd = std::sqrt(residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, X.rows() - 1)));
+  return model;
+}
+
+}  // namespace
+
+double DurationModel::predict(const Vector& change) const {
+  return std::clamp(mean + coefficients.dot(change), range[0], range[1]);
+}
+
+Matrix trajectory_metric(const DmpSettings& settings) {
+  constexpr Eigen::Index samples = 200;
+  const Eigen::Index N = settings.bases();
+  const Matrix R = response_matrix(settings, 1.0, linspace(0, 1, samples)) / std::sqrt(static_cast<double>(samples));
+  const double largest = Eigen::JacobiSVD<Matrix>(R).singularValues()[0];
+  // QR of R over the floor: A A^T without squaring the condition of R.
+  Matrix stacked(samples + N, N);
+  stacked << R, 1e-6 * largest * Matrix::Identity(N, N);
+  Matrix upper = Eigen::HouseholderQR<Matrix>(stacked).matrixQR().topRows(N).triangularView<Eigen::Upper>();
+  for (Eigen::Index i = 0; i < N; ++i) {
+    if (upper(i, i) < 0) upper.row(i) *= -1;
+  }
+  return upper.transpose();
+}
+
+Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                  const SkillOptions& options) {
+  check_rows(columns, rows);
+  const Dmp& first = rows.front().primitive;
+  const Eigen::Index n = static_cast<Eigen::Index>(rows.size());
+  const Eigen::Index D = first.dimensions();
+  const Eigen::Index N = first.settings.bases();
+
+  Skill skill;
+  skill.columns = columns;
+  skill.dmp = first.settings;
+  skill.start = Vector::Zero(D);
+  for (const auto& row : rows) {
+    skill.rows.push_back(row.labels);
+    skill.start += row.primitive.start / static_cast<double>(n);
+  }
+  for (const auto& row : rows) {
+    skill.start_spread = std::max(skill.start_spread, (row.primitive.start - skill.start).norm());
+  }
+  skill.duration = duration_model(rows, options);
+  skill.models = structure(options.structure, options.paper, static_cast<int>(D));
+
+  const Matrix all_changes = changes(rows);
+  const Matrix metric = options.paper ? Matrix() : trajectory_metric(skill.dmp);
+  for (auto& model : skill.models) {
+    const Eigen::Index outputs = static_cast<Eigen::Index>(model.outputs.size());
+    Matrix X(n, static_cast<Eigen::Index>(model.inputs.size()));
+    for (Eigen::Index j = 0; j < X.cols(); ++j) X.col(j) = all_changes.col(model.inputs[static_cast<std::size_t>(j)]);
+    Matrix W(n, N * outputs);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < outputs; ++j) {
+        W.row(i).segment(j * N, N) =
+            rows[static_cast<std::size_t>(i)].primitive.weights.row(model.outputs[static_cast<std::size_t>(j)]);
+      }
+    }
+    Matrix A;
+    if (!options.paper) {
+      A = Matrix::Zero(N * outputs, N * outputs);
+      for (Eigen::Index j = 0; j < outputs; ++j) A.block(j * N, j * N, N, N) = metric;
+    }
+    model.process = train_mvgp(X, W, A, process_options(options, static_cast<int>(X.cols())));
+  }
+  return skill;
+}
+
+double region_excess(const Skill& skill, const Vector& change) {
+  double excess = 0;
+  for (const auto& model : skill.models) {
+    for (std::size_t j = 0; j < model.inputs.size(); ++j) {
+      const auto column = model.process.X.col(static_cast<Eigen::Index>(j));
+      const double low = column.minCoeff();
+      const double high = column.maxCoeff();
+      const double margin = std::max(0.01, 0.1 * (high - low));
+      const double x = change[model.inputs[j]];
+      excess = std::max({excess, low - margin - x, x - high - margin});
+    }
+  }
+  return excess;
+}
+
+SkillPredictor::SkillPredictor(Skill skill) : skill_(std::move(skill)) {
+  for (const auto& model : skill_.models) predictors_.emplace_back(model.process);
+}
+
+WeightPrediction SkillPredictor::weights(const Vector& change) const {
+  const Eigen::Index D = static_cast<Eigen::Index>(skill_.columns.size());
+  const Eigen::Index N = skill_.dmp.bases();
+  WeightPrediction prediction{Matrix::Zero(D, N), Matrix::Zero(D, N)};
+  for (std::size_t m = 0; m < predictors_.size(); ++m) {
+    const SkillModel& model = skill_.models[m];
+    Vector x(static_cast<Eigen::Index>(model.inputs.size()));
+    for (Eigen::Index j = 0; j < x.size(); ++j) x[j] = change[model.inputs[static_cast<std::size_t>(j)]];
+    const MvgpPrediction w = predictors_[m].predict(x);
+    const Vector sd = predictors_[m].weight_covariance(w.variance).diagonal().cwiseMax(0.0).cwiseSqrt();
+    for (std::size_t j = 0; j < model.outputs.size(); ++j) {
+      const Eigen::Index from = static_cast<Eigen::Index>(j) * N;
+      prediction.mean.row(model.outputs[j]) = w.mean.segment(from, N).transpose();
+      prediction.sd.row(model.outputs[j]) = sd.segment(from, N).transpose();
+    }
+  }
+  return prediction;
+}
+
+Dmp SkillPredictor::primitive(const Goal& goal) const {
+  Dmp dmp;
+  dmp.settings = skill_.dmp;
+  dmp.start = goal.start.value_or(skill_.start);
+  dmp.goal = goal.position;
+  const Vector change = dmp.goal - dmp.start;
+  dmp.tau = goal.duration.value_or(skill_.duration.predict(change));
+  dmp.weights = weights(change).mean;
+  dmp.rmse = Vector::Zero(dmp.goal.size());
+  return dmp;
+}
+
+Motion generate(const Dmp& primitive, std::optional<double> dt) {
+  const double step = dt.value_or(primitive.tau / 200);
+  const double end = settle_time(primitive);
+  const double count = std::ceil(end / step - 1e-9);
+  if (!(count < 1e7)) throw DataError("skill.dt", "the time step makes over 10^7 samples");
+  Vector times(static_cast<Eigen::Index>(count) + 1);
+  for (Eigen::Index i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) * step;
+  return rollout(primitive, times);
+}
+
+}  // namespace lfd

@@ -1,0 +1,70 @@
+// Makes the demonstrations of an experiment, or the intention behind them.
+#include <fmt/format.h>
+
+#include "lfdtools/cli/program.hpp"
+#include "lfdtools/io/experiment_file.hpp"
+#include "lfdtools/io/labelled_table.hpp"
+#include "lfdtools/synthesis.hpp"
+
+using namespace lfd;
+
+namespace {
+
+enum class Wanted { demonstrations, intentions, holes, new_holes };
+
+/// Noise-free motions to every hole, demonstrated and new, 201 samples over the mean duration.
+void write_intentions(const Experiment& experiment, Output& out) {
+  LabelledTable table(out, joined({"t"}, experiment.columns));
+  for (const auto* holes : {&experiment.holes, &experiment.new_holes}) {
+    for (const auto& hole : *holes) {
+      const Vector phases = linspace(0, 1, 201);
+      table.write({.target = hole.target, .teacher = {}, .demo = {}, .sample = {}},
+                  beside(phases * experiment.duration_mean, intention(experiment, hole.position, phases)));
+    }
+  }
+}
+
+void write_holes(const std::vector<Hole>& holes, const std::vector<std::string>& columns, Output& out) {
+  LabelledTable table(out, columns);
+  for (const auto& hole : holes) {
+    table.write({.target = hole.target, .teacher = {}, .demo = {}, .sample = {}}, hole.position.transpose());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Wanted wanted = Wanted::demonstrations;
+  std::string target;
+  std::optional<std::int64_t> repetitions;
+  cli::Program program("demo-synth", "Make the demonstrations that an experiment file describes.");
+  program.reads("experiment JSON").uses_seed();
+  program.choice("--write", wanted,
+                 {{"demonstrations", Wanted::demonstrations}, {"intentions", Wanted::intentions},
+                  {"holes", Wanted::holes}, {"new-holes", Wanted::new_holes}},
+                 "what to write: noisy demonstrations, noise-free motions to all holes, or goals CSV");
+  program.text("--target", target, "this target's demonstrations alone");
+  program.integer("--repetitions", repetitions, {1, 1'000'000}, "demonstrations a target (default: the file's)");
+  program.example("demo-synth A.json -o demos.csv", "ten demonstrations to each of nine holes");
+  program.example("demo-synth A.json --write new-holes -o goals.csv", "holes that nobody demonstrated");
+  return program.run(argc, argv, [&](cli::Run& run) {
+    JsonStream stream(run.open(), run.messages(), run.json_options());
+    Experiment experiment = read_experiment(*stream.next());
+    if (program.given("--seed")) experiment.seed = run.seed();
+    if (repetitions) experiment.repetitions = *repetitions;
+    if (!target.empty()) {
+      std::erase_if(experiment.holes, [&](const Hole& hole) { return hole.target != target; });
+      if (experiment.holes.empty()) throw UsageError("synth.no_target", fmt::format("there is no hole '{}'", target));
+    }
+    switch (wanted) {
+      case Wanted::intentions: return write_intentions(experiment, run.output());
+      case Wanted::holes: return write_holes(experiment.holes, experiment.columns, run.output());
+      case Wanted::new_holes: return write_holes(experiment.new_holes, experiment.columns, run.output());
+      case Wanted::demonstrations: break;
+    }
+    LabelledTable table(run.output(), joined({"t"}, experiment.columns));
+    for (const auto& demonstration : synthesize(experiment).demonstrations) {
+      table.write(demonstration.labels, beside(demonstration.trajectory.times, demonstration.trajectory.positions));
+    }
+  });
+}

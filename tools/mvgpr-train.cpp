@@ -1,0 +1,62 @@
+// Learns a skill: weights as a function of goal - start (paper eq. (15)-(27)).
+#include <fmt/format.h>
+
+#include "lfdtools/cli/program.hpp"
+#include "lfdtools/io/dmp_file.hpp"
+#include "lfdtools/io/skill_file.hpp"
+
+using namespace lfd;
+
+int main(int argc, char** argv) {
+  SkillOptions options;
+  KernelType kernel = KernelType::constant;  // stands for the sum
+  MeanType mean = MeanType::zero;
+  std::int64_t starts = options.starts;
+  cli::Program program("mvgpr-train", "Learn a skill: movement primitives whose weights follow the target.");
+  program.reads("DMP JSON of several targets").uses_jobs().uses_seed();
+  program.flag("--paper", options.paper,
+               "the published process: a model an axis, zero mean, se-ard, plain weights (see --model for Table 1)");
+  program.choice("--model", options.structure,
+                 {{"auto", SkillStructure::automatic}, {"axis", SkillStructure::axis}, {"full", SkillStructure::full},
+                  {"joint", SkillStructure::joint}},
+                 "what speaks for what: each axis for itself, all for each axis (Table 1), all for all");
+  program.choice("--kernel", kernel,
+                 {{"sum", KernelType::constant}, {"se-ard", KernelType::se_ard}, {"matern32", KernelType::matern32},
+                  {"matern52", KernelType::matern52}},
+                 "covariance function; sum: constant + linear + se-ard an input + se-ard over all");
+  program.choice("--mean", mean,
+                 {{"zero", MeanType::zero}, {"constant", MeanType::constant}, {"linear", MeanType::linear}},
+                 "explicit mean function");
+  program.choice("--omega", options.omega, {{"integrated", OmegaRule::integrated}, {"ml", OmegaRule::ml}},
+                 "covariance between weights: integrated out, or free (needs more rows than weights)");
+  program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");
+  program.example("dmp-fit reference.csv | mvgpr-train -o skill.json", "one row a target");
+  program.example("demo-align demos.csv | dmp-fit | mvgpr-train -o skill.json", "every demonstration a row");
+  program.example("dmp-fit --paper reference.csv | mvgpr-train --paper --model full", "Table 1 of the paper, literally");
+  return program.run(argc, argv, [&](cli::Run& run) {
+    if (program.given("--kernel") && kernel != KernelType::constant) options.kernel = kernel;
+    if (program.given("--mean")) options.mean = mean;
+    options.starts = static_cast<int>(starts);
+    options.seed = run.seed();
+    options.jobs = run.jobs();
+    JsonStream stream(run.open(), run.messages(), run.json_options());
+    std::vector<SkillRow> rows;
+    SkillFile file;
+    while (auto document = stream.next()) {
+      DmpFile row = read_dmp(*document);
+      if (rows.empty()) {
+        file.header.columns = row.header.columns;
+        file.header.provenance = row.header.provenance;
+      } else if (row.header.columns != file.header.columns) {
+        document->root().at("columns").fail("skill.mixed_settings", "the primitives have different columns");
+      }
+      rows.push_back({row.header.labels, std::move(row.dmp)});
+    }
+    file.skill = train_skill(file.header.columns, rows, options);
+    file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
+    for (std::size_t m = 0; m < file.skill.models.size(); ++m) {
+      run.figure(fmt::format("log_marginal_likelihood_{}", m + 1), file.skill.models[m].process.log_marginal_likelihood);
+    }
+    write_skill(file, run.output());
+  });
+}
