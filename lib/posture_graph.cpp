@@ -24,7 +24,6 @@ struct Edge {
   double seconds = 0.0;  // largest |dq_j| / v_j
   bool changes_branch = false;
   std::array<int, 6> turns{};  // of the second posture, when the first has none
-
   [[nodiscard]] bool jumps() const { return ratio >= jump_cost; }
 };
 
@@ -57,8 +56,7 @@ class Graph {
     counting_ = counting;
     number_states();
     const Starts starts = choose_starts(bottlenecks());
-    if (starts.states.empty()) return std::nullopt;
-    return trace(starts);
+    return starts.states.empty() ? std::nullopt : trace(starts);
   }
 
   /// First layer that no way within the limits comes to, after solve(true) has failed.
@@ -85,7 +83,6 @@ class Graph {
     int changes = 0;
     double seconds = 0.0;
     double start = 0.0;
-
     bool operator<(const Cost& other) const {
       return std::tie(jumps, changes, seconds, start) <
              std::tie(other.jumps, other.changes, other.seconds, other.start);
@@ -216,8 +213,7 @@ class Graph {
       }
     }
     starts.largest_ratio = with_slack(bottleneck);
-    if (options_.seed) return starts;
-    for (std::size_t s = 0; s < ahead.size(); ++s) {
+    for (std::size_t s = 0; !options_.seed && s < ahead.size(); ++s) {
       if (ahead[s] <= starts.largest_ratio) starts.states.push_back(s);
     }
     return starts;
