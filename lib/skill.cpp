@@ -171,7 +171,12 @@ double region_excess(const Skill& skill, const Vector& change) {
 }
 
 SkillPredictor::SkillPredictor(Skill skill) : skill_(std::move(skill)) {
-  for (const auto& model : skill_.models) predictors_.emplace_back(model.process);
+  bool plain = skill_.dmp.bases() < 5;
+  for (const auto& model : skill_.models) {
+    predictors_.emplace_back(model.process);
+    plain = plain || model.process.output_transform.size() == 0;
+  }
+  if (!plain) rest_.emplace(skill_.dmp, trajectory_metric(skill_.dmp));
 }
 
 WeightPrediction SkillPredictor::weights(const Vector& change) const {
@@ -202,6 +207,7 @@ Dmp SkillPredictor::primitive(const Goal& goal) const {
   dmp.tau = goal.duration.value_or(skill_.duration.predict(change));
   dmp.weights = weights(change).mean;
   dmp.rmse = Vector::Zero(dmp.goal.size());
+  if (rest_) dmp.weights = rest_->apply(dmp);
   return dmp;
 }
 

@@ -233,7 +233,8 @@ TEST_CASE("each demonstration depends on seed, target and repetition alone") {
     CHECK(same == 1);
   }
   e.seed = 2;
-  CHECK(synthesize(e).demonstrations[0].trajectory.positions != after.demonstrations[0].trajectory.positions);
+  CHECK(synthesize(e).demonstrations[0].trajectory.positions.row(1) !=
+        after.demonstrations[0].trajectory.positions.row(1));
   e.noise.tremor_sd = 0;  // one kind of noise does not move the others
   CHECK(synthesize(e).demonstrations[0].trajectory.samples() == [&] {
     e.noise.tremor_sd = 0.001;

@@ -7,6 +7,7 @@
 
 #include "lfdtools/dmp.hpp"
 #include "lfdtools/mvgp.hpp"
+#include "lfdtools/rest.hpp"
 #include "lfdtools/trajectory.hpp"
 
 namespace lfd {
@@ -107,12 +108,15 @@ class SkillPredictor {
   [[nodiscard]] const Skill& skill() const { return skill_; }
   /// @param change  dP, D [m]
   [[nodiscard]] WeightPrediction weights(const Vector& change) const;
-  /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3).
+  /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Its weights are the predicted
+  /// ones made to end at rest on the goal (rest.hpp), unless the skill has plain weights (the paper's) or fewer than five
+  /// basis functions.
   [[nodiscard]] Dmp primitive(const Goal& goal) const;
 
  private:
   Skill skill_;
   std::vector<MvgpPredictor> predictors_;
+  std::optional<RestConditions> rest_;
 };
 
 /// The motion of a primitive on times 0, dt, 2 dt, ... tau and on until it rests on its goal (settle_time). The last sample

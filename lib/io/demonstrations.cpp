@@ -39,6 +39,11 @@ void require_column(const CsvTable& table, const std::string& column) {
   if (!table.has(column)) (void)table.read_group(0, {column});  // refuses, and names the columns that are there
 }
 
+/// To a tenth of a millimetre, for messages.
+double rounded(double value) {
+  return std::round(value * 1e4) / 1e4;
+}
+
 double median_period(const Vector& times) {
   std::vector<double> periods;
   for (Eigen::Index k = 1; k < times.size(); ++k) periods.push_back(times[k] - times[k - 1]);
@@ -87,7 +92,7 @@ void warn_of_starts(const Pool& pool, Messages& messages) {
     const std::string words = describe(pool.labels);
     messages.warning("demo.starts_differ",
                      "the starts of the demonstrations" + (words.empty() ? "" : " of " + words) + " lie up to " +
-                         number_text(widest) + " apart, over " + number_text(far_start),
+                         number_text(rounded(widest)) + " apart, over " + number_text(far_start),
                      far->place(0));
   }
 }

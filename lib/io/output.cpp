@@ -130,7 +130,10 @@ void Output::open_temporary(const std::string& path) {
     temporary_ = Descriptor(::open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!temporary_.open() && errno != EEXIST) break;
   }
-  if (!temporary_.open()) fail_create(name_, std::strerror(errno));
+  if (!temporary_.open()) {
+    temporary_path_.clear();  // nothing to remove
+    fail_create(name_, std::strerror(errno));
+  }
   if (registered == 0 && temporary_path_.size() < sizeof registered_path) {
     std::strcpy(registered_path, temporary_path_.c_str());
     registered = 1;
@@ -142,11 +145,16 @@ Output::~Output() {
 }
 
 void Output::discard() noexcept {
-  if (!temporary_.open()) return;
+  temporary_.close();
+  if (temporary_path_.empty()) return;
   const SignalsHeld held;
   ::unlink(temporary_path_.c_str());
+  forget_temporary();
+}
+
+void Output::forget_temporary() noexcept {
   if (registered != 0 && temporary_path_ == registered_path) registered = 0;
-  temporary_.close();
+  temporary_path_.clear();
 }
 
 void Output::write(std::string_view bytes) {
@@ -186,11 +194,11 @@ void Output::finish() {
     return;
   }
   if (::fsync(temporary_.number()) != 0 && errno != EINVAL) fail_write(name_);
+  if (!temporary_.close()) fail_write(name_);  // before the rename: what was not written must not replace the old file
   const Descriptor folder(::open(folder_of(target_path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const SignalsHeld held;
   if (::rename(temporary_path_.c_str(), target_path_.c_str()) != 0) fail_create(name_, std::strerror(errno));
-  if (temporary_path_ == registered_path) registered = 0;
-  if (!temporary_.close()) fail_write(name_);
+  forget_temporary();
   if (folder.open() && ::fsync(folder.number()) != 0 && errno != EINVAL) fail_write(name_);
 }
 

@@ -49,14 +49,15 @@ class Output {
   void make_room(std::size_t count);
   void flush();
   void discard() noexcept;
+  void forget_temporary() noexcept;
 
   std::string name_;
   std::vector<char> buffer_;
   std::size_t used_ = 0;
-  Spool spool_;           // where the output is no regular file
-  Descriptor direct_;     // named pipe or device
-  Descriptor temporary_;  // beside the file to be replaced
-  std::string temporary_path_;
+  Spool spool_;                 // where the output is no regular file
+  Descriptor direct_;           // named pipe or device
+  Descriptor temporary_;        // beside the file to be replaced
+  std::string temporary_path_;  // empty: there is none
   std::string target_path_;
 };
 
