@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -24,7 +25,11 @@ void parallel_for(std::size_t count, unsigned jobs, const std::function<void(std
   };
   {
     std::vector<std::jthread> threads;
-    for (unsigned j = 1; j < jobs; ++j) threads.emplace_back(work);
+    try {
+      for (unsigned j = 1; j < jobs; ++j) threads.emplace_back(work);
+    } catch (const std::system_error&) {
+      // No room for another thread: those that there are do the work.
+    }
     work();
   }
   for (const auto& failure : failures) {

@@ -70,10 +70,13 @@ MvgpOptions process_options(const SkillOptions& options, int p) {
 DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptions& options) {
   const Matrix X = changes(rows);
   Matrix tau(X.rows(), 1);
+  // Deviations from the mean duration, so that the prior draws towards that and not towards zero.
   for (std::size_t i = 0; i < rows.size(); ++i) tau(static_cast<Eigen::Index>(i), 0) = rows[i].primitive.tau;
   DurationModel model;
   model.range[0] = tau.minCoeff();
   model.range[1] = tau.maxCoeff();
+  const double mean = tau.mean();
+  tau.array() -= mean;
   MvgpOptions process = default_mvgp_options(static_cast<int>(X.cols()));
   process.kernel.terms.resize(2);  // constant, linear
   process.starts = 1;
@@ -85,6 +88,7 @@ DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptio
     model.coefficients[j] = line.predict(Vector::Unit(X.cols(), j)).mean[0] - model.mean;
   }
   const Vector residual = tau - ((X * model.coefficients).array() + model.mean).matrix();
+  model.mean += mean;
   model.sd = std::sqrt(residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, X.rows() - 1)));
   return model;
 }
@@ -126,8 +130,10 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
     skill.rows.push_back(row.labels);
     skill.start += row.primitive.start / static_cast<double>(n);
   }
-  for (const auto& row : rows) {
-    skill.start_spread = std::max(skill.start_spread, (row.primitive.start - skill.start).norm());
+  for (const auto& a : rows) {
+    for (const auto& b : rows) {
+      skill.start_spread = std::max(skill.start_spread, (a.primitive.start - b.primitive.start).norm());
+    }
   }
   skill.duration = duration_model(rows, options);
   skill.models = structure(options.structure, options.paper, static_cast<int>(D));
@@ -171,12 +177,7 @@ double region_excess(const Skill& skill, const Vector& change) {
 }
 
 SkillPredictor::SkillPredictor(Skill skill) : skill_(std::move(skill)) {
-  bool plain = skill_.dmp.bases() < 5;
-  for (const auto& model : skill_.models) {
-    predictors_.emplace_back(model.process);
-    plain = plain || model.process.output_transform.size() == 0;
-  }
-  if (!plain) rest_.emplace(skill_.dmp, trajectory_metric(skill_.dmp));
+  for (const auto& model : skill_.models) predictors_.emplace_back(model.process);
 }
 
 WeightPrediction SkillPredictor::weights(const Vector& change) const {
@@ -207,13 +208,14 @@ Dmp SkillPredictor::primitive(const Goal& goal) const {
   dmp.tau = goal.duration.value_or(skill_.duration.predict(change));
   dmp.weights = weights(change).mean;
   dmp.rmse = Vector::Zero(dmp.goal.size());
-  if (rest_) dmp.weights = rest_->apply(dmp);
   return dmp;
 }
 
 Motion generate(const Dmp& primitive, std::optional<double> dt) {
   const double step = dt.value_or(primitive.tau / 200);
-  const double end = settle_time(primitive);
+  SettleOptions settled;
+  settled.tolerance /= std::sqrt(static_cast<double>(primitive.dimensions()));  // so that the distance is within it
+  const double end = settle_time(primitive, settled);
   const double count = std::ceil(end / step - 1e-9);
   if (!(count < 1e7)) throw DataError("skill.dt", "the time step makes over 10^7 samples");
   Vector times(static_cast<Eigen::Index>(count) + 1);

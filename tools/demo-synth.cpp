@@ -37,8 +37,10 @@ int main(int argc, char** argv) {
   Wanted wanted = Wanted::demonstrations;
   std::string target;
   std::optional<std::int64_t> repetitions;
+  std::optional<std::int64_t> seed;
   cli::Program program("demo-synth", "Make the demonstrations that an experiment file describes.");
-  program.reads("experiment JSON").uses_seed();
+  program.reads("experiment JSON");
+  program.integer("--seed", seed, {0, 9'000'000'000'000'000'000}, "seed of the noise (default: the file's)");
   program.choice("--write", wanted,
                  {{"demonstrations", Wanted::demonstrations}, {"intentions", Wanted::intentions},
                   {"holes", Wanted::holes}, {"new-holes", Wanted::new_holes}},
@@ -50,7 +52,7 @@ int main(int argc, char** argv) {
   return program.run(argc, argv, [&](cli::Run& run) {
     JsonStream stream(run.open(), run.messages(), run.json_options());
     Experiment experiment = read_experiment(*stream.next());
-    if (program.given("--seed")) experiment.seed = run.seed();
+    if (seed) experiment.seed = static_cast<std::uint64_t>(*seed);
     if (repetitions) experiment.repetitions = *repetitions;
     if (!target.empty()) {
       std::erase_if(experiment.holes, [&](const Hole& hole) { return hole.target != target; });

@@ -37,11 +37,14 @@ int main(int argc, char** argv) {
         throw DataError("compare.repeated", fmt::format("target {} has more than one reference motion", target));
       }
     }
-    DemonstrationSource motions(CsvTable(run.open(), run.messages()), run.messages(), {.columns = run.options().columns});
+    DemonstrationSource motions(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
+                                run.messages(), {.columns = run.options().columns});
     if (motions.columns() != references.columns()) {
       throw DataError("compare.columns_differ", "motions and references have different signals");
     }
-    LabelledTable table(run.output(), {"rmse", "end_error", "arrival_angle", "lateral", "jerk", "path_length", "duration"});
+    LabelledTable table(run.output(), joined({"rmse", "end_error", "arrival_angle", "lateral", "jerk", "path_length", "duration"},
+                                             prefixed("arrival_", motions.columns())));
+    const auto D = static_cast<Eigen::Index>(motions.columns().size());
     for (std::size_t i = 0; i < motions.recordings(); ++i) {
       const Demonstration motion = motions.recording(i).demonstration;
       const auto found = paths.find(motion.labels.target.value_or(""));
@@ -54,10 +57,11 @@ int main(int argc, char** argv) {
       const double seconds = duration.value_or(motion.trajectory.duration());
       // Arrival and end look at the whole motion: it may settle after its duration.
       const Samples& whole = motion.trajectory.positions;
-      Samples row(1, 7);
+      const Arrival own = arrival(whole);
+      Samples row(1, 7 + D);
       row << rms_distance(scored, reference), (motion.trajectory.goal() - line.end).norm(),
-          angle_between(arrival(whole).direction, line.direction) * 180 / std::numbers::pi, lateral_deviation(whole, line),
-          rms_jerk(scored, seconds), path_length(whole), motion.trajectory.duration();
+          angle_between(own.direction, line.direction) * 180 / std::numbers::pi, lateral_deviation(whole, line),
+          rms_jerk(scored, seconds), path_length(whole), motion.trajectory.duration(), own.direction.transpose();
       table.write(motion.labels, row);
     }
   });

@@ -87,8 +87,8 @@ void generate_from_skill(const SkillFile& file, const Request& request, cli::Run
   for (const Goal& goal : goals) {
     const std::string name = goal.labels.target ? describe(goal.labels) + ": " : std::string();
     if (!goal.start && skill.start_spread > 0.02) {
-      run.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart from their mean, so a goal needs a "
-                                      "start", name, 1e3 * skill.start_spread));
+      run.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start"
+                                      "", name, 1e3 * skill.start_spread));
     }
     const Vector change = goal.position - goal.start.value_or(skill.start);
     const double excess = region_excess(skill, change);

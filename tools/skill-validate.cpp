@@ -65,9 +65,9 @@ int main(int argc, char** argv) {
   program.integer("-n,--basis", bases, {2, 10'000}, "basis functions");
   program.integer_range("-k,--components", components, {1, 10'000}, "components of the references, chosen by BIC");
   program.flag("--table", table, "a readable table of rmse in millimetres instead of CSV");
-  for (const auto& method : validation_methods()) {
-    program.example("--methods " + method.name, method.meaning);
-  }
+  std::vector<std::pair<std::string, std::string>> methods;
+  for (const auto& method : validation_methods()) methods.emplace_back(method.name, method.meaning);
+  program.topic("Methods", methods);
   program.example("skill-validate demos.csv --table", "every method on every target");
   return program.run(argc, argv, [&](cli::Run& run) {
     DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),

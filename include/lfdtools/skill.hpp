@@ -7,7 +7,6 @@
 
 #include "lfdtools/dmp.hpp"
 #include "lfdtools/mvgp.hpp"
-#include "lfdtools/rest.hpp"
 #include "lfdtools/trajectory.hpp"
 
 namespace lfd {
@@ -63,7 +62,7 @@ struct Skill {
   std::vector<std::string> columns;  ///< D signal names
   DmpSettings dmp;
   Vector start;              ///< mean start of the rows, D [m]
-  double start_spread = 0;   ///< largest distance of a row's start from `start` [m]
+  double start_spread = 0;   ///< largest distance between the starts of two rows [m]
   std::vector<Labels> rows;  ///< n
   DurationModel duration;
   std::vector<SkillModel> models;
@@ -108,15 +107,13 @@ class SkillPredictor {
   [[nodiscard]] const Skill& skill() const { return skill_; }
   /// @param change  dP, D [m]
   [[nodiscard]] WeightPrediction weights(const Vector& change) const;
-  /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Its weights are the predicted
-  /// ones made to end at rest on the goal (rest.hpp), unless the skill has plain weights (the paper's) or fewer than five
-  /// basis functions.
+  /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Rows fitted by
+  /// `trajectory` all meet the condition y(tau) = g, which is linear in the weights, so predictions mixed from them meet it too.
   [[nodiscard]] Dmp primitive(const Goal& goal) const;
 
  private:
   Skill skill_;
   std::vector<MvgpPredictor> predictors_;
-  std::optional<RestConditions> rest_;
 };
 
 /// The motion of a primitive on times 0, dt, 2 dt, ... tau and on until it rests on its goal (settle_time). The last sample

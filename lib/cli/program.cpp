@@ -20,6 +20,8 @@ struct Program::Implementation {
   std::string reads;
   bool uses_seed = false;
   std::vector<std::string> gates;
+  std::string gate_lines;
+  std::string topics;
   std::string examples;
   std::vector<std::function<void()>> checks;
   std::vector<std::string> optional_values;                     // options whose value may be left out
@@ -99,6 +101,29 @@ MessageFormat message_format(int argc, char** argv) {
     }
   }
   return MessageFormat::text;
+}
+
+/// CLI11's refusals in our words.
+UsageError usage_error(const CLI::ParseError& error) {
+  std::string text = error.what();
+  if (error.get_name() == "ExtrasError") {
+    text = "unknown option or argument: " + text.substr(text.find(':') + 2);
+  } else if (error.get_name() == "ArgumentMismatch") {
+    text = text.substr(0, text.find(':')) + ": a value is missing, or the option is given more than once";
+  } else if (!text.empty()) {
+    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  }
+  return {"usage.option", text};
+}
+
+/// Refuses a summary file that cannot be appended to before anything is computed.
+void check_summary(const std::string& path) {
+  if (path.empty() || access(path.c_str(), W_OK) == 0) return;
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  if (access(path.c_str(), F_OK) == 0 || access(folder.c_str(), W_OK) != 0) {
+    throw Error(Fault::cannot_create, "output.cannot_create", "the summary cannot be written", {path, 0, 0, ""});
+  }
 }
 
 void print(const std::string& text) {
@@ -186,22 +211,24 @@ Program& Program::gate(const std::string& name, const std::string& doc) {
         }
         impl_->common.lifted.insert(word);
       }
-    }, "lift a gate by name; repeatable")->type_name("NAME")->expected(1)->take_all()->group("Gates");
+    }, "lift a gate by name; repeatable")->type_name("NAME")->expected(1)->take_all()->allow_extra_args(false)->group("Gates");
     impl_->app.add_flag("--no-gates", impl_->common.all_lifted, "lift every gate: what they would refuse is a warning")
         ->group("Gates");
-    impl_->examples = "\nGates (exit 1):\n" + impl_->examples;
   }
   impl_->gates.push_back(name);
-  const std::size_t end = impl_->examples.find("\n\n", 1);
-  const std::string line = fmt::format("  {:<18} {}\n", name, doc);
-  impl_->examples.insert(end == std::string::npos ? impl_->examples.size() : end + 1, line);
+  impl_->gate_lines += fmt::format("  {:<18} {}\n", name, doc);
   return *this;
 }
 
 Program& Program::example(const std::string& command, const std::string& says) {
   auto& text = impl_->examples;
-  if (text.find("Examples:") == std::string::npos) text += "\nExamples:\n";
   text += fmt::format("  {}\n      {}\n", command, says);
+  return *this;
+}
+
+Program& Program::topic(const std::string& title, const std::vector<std::pair<std::string, std::string>>& lines) {
+  impl_->topics += fmt::format("\n{}:\n", title);
+  for (const auto& [word, meaning] : lines) impl_->topics += fmt::format("  {:<18} {}\n", word, meaning);
   return *this;
 }
 
@@ -256,12 +283,12 @@ Program& Program::number(const std::string& names, std::optional<double>& value,
 Program& Program::number_or_default(const std::string& names, std::optional<double>& value, double otherwise,
                                     Range<double> range, const std::string& doc) {
   auto text = std::make_shared<std::string>();
-  auto* option = impl_->app.add_flag(fmt::format("{}{{{}}}", names, number_text(otherwise)), *text, doc);
+  auto* option = impl_->app.add_flag(names, *text, doc);
   option->multi_option_policy(CLI::MultiOptionPolicy::Throw)->type_name("[=X]");
   impl_->optional_values.push_back(long_name(names));
   impl_->checks.push_back([=, &value] {
     if (option->count() == 0) return;
-    value = number_value(long_name(names), *text);
+    value = *text == "true" ? otherwise : number_value(long_name(names), *text);
     check_range(names, *value, range.low, range.high, range.open_low);
     *text = number_text(*value);
   });
@@ -294,7 +321,7 @@ Program& Program::number_lists(const std::string& names, std::vector<std::vector
           }
         }
       }, doc);
-  option->type_name("X,...")->expected(1)->take_all();
+  option->type_name("X,...")->expected(1)->take_all()->allow_extra_args(false);
   impl_->recorders.push_back([option, &value](std::vector<std::string>& arguments) {
     for (const auto& list : value) arguments.push_back(option->get_name(false, false) + "=" + canonical(list));
   });
@@ -360,12 +387,14 @@ int Program::run(int argc, char** argv, const std::function<void(Run&)>& body) {
   auto& common = impl_->common;
   Messages messages(impl_->name, message_format(argc, argv));
   try {
-    app.footer(impl_->examples);
+    std::string footer = impl_->topics;
+    if (!impl_->gates.empty()) footer += "\nGates (exit 1):\n" + impl_->gate_lines;
+    app.footer(footer + "\nExamples:\n" + impl_->examples);
     try {
       app.parse(arguments_of(argc, argv, impl_->optional_values));
     } catch (const CLI::ParseError& error) {
       if (app.count("--help") == 0 && app.count("--version") == 0) {
-        throw UsageError("usage.option", error.what());
+        throw usage_error(error);
       }
     }
     if (app.count("--help") > 0) {
@@ -385,6 +414,7 @@ int Program::run(int argc, char** argv, const std::function<void(Run&)>& body) {
     Provenance entry{impl_->name, LFD_VERSION, {}, {}, {}};
     for (const auto& recorder : impl_->recorders) recorder(entry.arguments);
     if (impl_->uses_seed) entry.seed = static_cast<std::uint64_t>(common.seed);
+    check_summary(common.summary);
     Run run(common, messages, std::move(entry));
     body(run);
     run.finish();

@@ -54,6 +54,7 @@ std::vector<std::string> names(const std::vector<int>& positions, const std::vec
 }
 
 KernelTerm read_term(const JsonView& view, const std::vector<std::string>& inputs, bool term_of_sum) {
+  view.only({"type", "variance", "inputs", "length_scales"});
   KernelTerm term;
   checked(view.at("type"), [&] { term.type = kernel_type_from_name(view.at("type").string()); });
   term.variance = view.at("variance").positive();
@@ -69,6 +70,7 @@ KernelTerm read_term(const JsonView& view, const std::vector<std::string>& input
 Kernel read_kernel(const JsonView& view, const std::vector<std::string>& inputs) {
   Kernel kernel;
   if (view.at("type").string() == "sum") {
+    view.only({"type", "terms"});
     const JsonView terms = view.at("terms");
     for (std::size_t i = 0; i < terms.size(); ++i) kernel.terms.push_back(read_term(terms.at(i), inputs, true));
   } else {
@@ -93,6 +95,7 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
   process.noise_variance = view.at("noise_variance").number(0, 1e300);
   if (const auto noise = view.find("noise")) process.noise = noise->vector(n);
   const JsonView mean = view.at("mean");
+  mean.only({"type", "coefficients"});
   process.mean = value_of(mean_names, mean.at("type"));
   const Eigen::Index rows = process.mean == MeanType::zero ? 0 : process.mean == MeanType::constant ? 1 : 1 + p;
   process.coefficients = rows == 0 ? Matrix(0, d) : mean.at("coefficients").matrix(rows, d);
@@ -162,18 +165,17 @@ SkillFile read_skill(const JsonDocument& document) {
   Skill& skill = file.skill;
   skill.columns = file.header.columns;
   const auto D = static_cast<Eigen::Index>(skill.columns.size());
+  root.at("dmp").only({"scaling", "alpha_z", "beta_z", "alpha_x", "centers", "widths"});
   skill.dmp = read_dmp_settings(root.at("dmp"));
   skill.start = root.at("start").vector(D);
   if (const auto spread = root.find("start_spread")) skill.start_spread = spread->number(0, 1e300);
   const JsonView rows = root.at("rows");
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    Labels labels;
-    if (const auto target = rows.at(i).find("target")) labels.target = target->label();
-    if (const auto teacher = rows.at(i).find("teacher")) labels.teacher = teacher->label();
-    if (const auto demo = rows.at(i).find("demo")) labels.demo = demo->label();
-    skill.rows.push_back(labels);
+    rows.at(i).only({"target", "demo", "teacher"});
+    skill.rows.push_back(read_labels(rows.at(i)));
   }
   const JsonView duration = root.at("duration");
+  duration.only({"mean", "coefficients", "sd", "range"});
   skill.duration.mean = duration.at("mean").number();
   skill.duration.coefficients = duration.at("coefficients").vector(D);
   if (const auto sd = duration.find("sd")) skill.duration.sd = sd->number(0, 1e300);
@@ -207,9 +209,7 @@ void write_skill(const SkillFile& file, Output& out) {
   json.member("start", skill.start).member("start_spread", skill.start_spread).key("rows").begin_array();
   for (const auto& row : skill.rows) {
     json.begin_object();
-    if (row.target) json.member("target", *row.target);
-    if (row.demo) json.member("demo", *row.demo);
-    if (row.teacher) json.member("teacher", *row.teacher);
+    write_labels(json, row);
     json.end_object();
   }
   json.end_array().key("duration").begin_object().member("mean", skill.duration.mean);

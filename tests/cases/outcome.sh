@@ -32,3 +32,6 @@ edit() {
 with_last() {
   awk -v cell="$1" -v last="$(wc -l <"$GOOD")" 'NR < last { print; next } { sub(/[^,]*$/, ""); print $0 cell }' "$GOOD"
 }
+
+# Standard input without the digests of inputs, which tell files apart that mean the same.
+undigested() { sed 's/"input_sha256":"[0-9a-f]*"/"input_sha256":""/g'; }

@@ -97,7 +97,7 @@ for kind in every-program $KINDS "$PROGRAM"; do
     if ! run_case "$folder" "$name" >"$scratch/report"; then
       failed=$((failed + 1))
       echo "DIFFERS: $kind/$name ($PROGRAM)"
-      cat "$scratch/report"
+      head -n 20 "$scratch/report" | cut -c 1-300
     fi
   done
 done

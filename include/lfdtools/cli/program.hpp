@@ -49,6 +49,8 @@ class Program {
   Program& uses_columns();
   /// Declares a gate that `--no-gate NAME` may lift.
   Program& gate(const std::string& name, const std::string& doc);
+  /// A list of words and their meanings for --help.
+  Program& topic(const std::string& title, const std::vector<std::pair<std::string, std::string>>& lines);
   Program& example(const std::string& command, const std::string& says);
 
   Program& flag(const std::string& names, bool& value, const std::string& doc);

@@ -1,0 +1,73 @@
+# bash completion for lfdtools: options, choice words, gates, targets of --robot.  . lfdtools.bash
+# In zsh: autoload -U +X bashcompinit && bashcompinit, then the same (or put _lfdtools on fpath).
+
+_lfdtools_options() {
+  local common="-o --output -q --quiet -v --verbose --errors --summary -h --help -V --version --strict"
+  local table="--columns --renumber" gates="--no-gate --no-gates"
+  case $1 in
+    demo-synth) echo "$common --seed --write --target --repetitions" ;;
+    demo-align) echo "$common $table -j --jobs --reference --clock --window --trim --samples --leave-out-outliers --costs" ;;
+    gmm-fit) echo "$common $table -j --jobs --seed -k --components --bic-n --restarts" ;;
+    gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
+    dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
+    mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
+    skill-generate) echo "$common $gates --goal --goals --target --start --duration --dt --weights --derivatives" ;;
+    skill-validate) echo "$common $table -j --jobs --seed --methods --road --trim -n --basis -k --components --table" ;;
+    ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
+                  "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
+    ur10-fk) echo "$common --robot --tool --frame" ;;
+    motion-compare) echo "$common $table --reference --duration -n --samples" ;;
+  esac
+}
+
+# Words that the option $2 of the program $1 takes; status 1 where it takes a file name or is a flag, 2 where a number
+# or a word of the user's own.
+_lfdtools_words() {
+  case $1:$2 in
+    *:--errors) echo "text json" ;;
+    demo-synth:--write) echo "demonstrations intentions holes new-holes" ;;
+    demo-align:--reference) echo "medoid longest dba" ;;
+    demo-align:--clock) echo "mean reference" ;;
+    gmm-fit:--bic-n) echo "samples" ;;
+    dmp-fit:--scaling) echo "none goal" ;;
+    dmp-fit:--fit) echo "trajectory ls lwr" ;;
+    mvgpr-train:--model) echo "auto axis full joint" ;;
+    mvgpr-train:--kernel) echo "sum se-ard matern32 matern52" ;;
+    mvgpr-train:--mean) echo "zero constant linear" ;;
+    mvgpr-train:--omega) echo "integrated ml" ;;
+    skill-validate:--methods) echo "skill paper paper-full line nearest mean affine affine-means" ;;
+    skill-validate:--road) echo "demonstrations references" ;;
+    *:--robot) echo "ur10 ur10e" ;;
+    *:--frame) echo "base base_link" ;;
+    dmp-fit:--no-gate) echo "goal_change" ;;
+    skill-generate:--no-gate) echo "region start" ;;
+    ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
+                            "tcp_speed tcp_acceleration condition" ;;
+    *:-j | *:--jobs | *:--seed | *:--columns | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
+    *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start) return 2 ;;
+    *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--max-*) return 2 ;;
+    *) return 1 ;;
+  esac
+}
+
+_lfdtools() {
+  local program=${COMP_WORDS[0]##*/} word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]} words found
+  # --option=word comes as three words.
+  if [ "$word" = "=" ]; then
+    word=
+  elif [ "$option" = "=" ] && [ "$COMP_CWORD" -ge 2 ]; then
+    option=${COMP_WORDS[COMP_CWORD-2]}
+  fi
+  COMPREPLY=()
+  words=$(_lfdtools_words "$program" "$option")
+  found=$?
+  if [ $found -eq 0 ]; then
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+  elif [ $found -eq 1 ] && [ "${word#-}" != "$word" ]; then
+    COMPREPLY=($(compgen -W "$(_lfdtools_options "$program")" -- "$word"))
+  fi
+}
+
+# Where there is nothing to say (files, numbers), bash offers file names.
+complete -o bashdefault -o default -F _lfdtools demo-align demo-synth dmp-fit gmm-fit gmr-regress motion-compare \
+  mvgpr-train skill-generate skill-validate ur10-fk ur10-ik
