@@ -47,8 +47,9 @@ function size(experiment, signal,   i, t, sum) {
 }
 # Mean distance between weights of a signal within the two pairs {a b}, {c d}, over that between the pairs.
 function grouping(signal, a, b, c, d) {
-  return (distance("A", signal, a, b) + distance("A", signal, c, d)) * 2 /
-         (distance("A", signal, a, c) + distance("A", signal, a, d) + distance("A", signal, b, c) + distance("A", signal, b, d))
+  within_pairs = (distance("A", signal, a, b) + distance("A", signal, c, d)) / 2
+  between = (distance("A", signal, a, c) + distance("A", signal, a, d) + distance("A", signal, b, c) + distance("A", signal, b, d)) / 4
+  return within_pairs / between
 }
 # Positions of the first motion of a file after subtracting the straight line from start to goal, at 51 samples.
 function shape(file, key,   line, cell, n, k, j, s) {
