@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
   program.example("demo-align --trim --costs demos.csv", "how far apart demonstrations lie once idle ends are cut");
   return program.run(argc, argv, [&](cli::Run& run) {
     DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
-                               run.messages(), {.columns = run.options().columns, .min_samples = 2});
+                               run.messages(), {.columns = run.options().columns});
     options.jobs = run.jobs();
     if (samples) options.samples = *samples;
     if (reference == "longest") options.reference = Reference::longest;

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   return program.run(argc, argv, [&](cli::Run& run) {
     JsonStream stream(run.open(), run.messages(), run.json_options());
     Experiment experiment = read_experiment(*stream.next());
+    if (stream.next()) throw DataError("json.one_document", "an experiment is one document");
     if (seed) experiment.seed = static_cast<std::uint64_t>(*seed);
     if (repetitions) experiment.repetitions = *repetitions;
     if (!target.empty()) {

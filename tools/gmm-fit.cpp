@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   });
   return program.run(argc, argv, [&](cli::Run& run) {
     DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
-                               run.messages(), {.columns = run.options().columns, .min_samples = 2});
+                               run.messages(), {.columns = run.options().columns});
     options.restarts = static_cast<int>(restarts);
     options.seed = run.seed();
     options.jobs = run.jobs();

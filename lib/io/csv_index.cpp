@@ -59,6 +59,10 @@ void CsvTable::Impl::read_header(std::size_t f, LineReader& lines) {
   }
   std::vector<CsvCell> cells;
   split_cells(line, name, 1, cells);
+  if (std::all_of(cells.begin(), cells.end(), [](const CsvCell& cell) { return is_number(cell.text); })) {
+    fail_csv("csv.no_header", "the first row consists of numbers: a header line with column names is missing", name, 1,
+             1);
+  }
   std::vector<std::string> names;
   for (const CsvCell& cell : cells) {
     const std::size_t at = cell.column + shift;
@@ -68,10 +72,6 @@ void CsvTable::Impl::read_header(std::size_t f, LineReader& lines) {
       fail_csv("csv.duplicate_column", "there are two columns " + shown(cell.text), name, 1, at);
     }
     names.push_back(cell.text);
-  }
-  if (std::all_of(names.begin(), names.end(), is_number)) {
-    fail_csv("csv.no_header", "the first row consists of numbers: a header line with column names is missing", name, 1,
-             1);
   }
   if (names.size() == 1 && names[0].find(';') != std::string::npos) {
     fail_csv("csv.semicolon", "the columns are separated by semicolons: commas, and decimal points, are needed", name,
