@@ -1,6 +1,8 @@
 // Learns a skill: weights as a function of goal - start (paper eq. (15)-(27)).
 #include <fmt/format.h>
 
+#include <set>
+
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/io/dmp_file.hpp"
 #include "lfdtools/io/skill_file.hpp"
@@ -41,6 +43,7 @@ int main(int argc, char** argv) {
     options.jobs = run.jobs();
     JsonStream stream(run.open(), run.messages(), run.json_options());
     std::vector<SkillRow> rows;
+    std::set<std::string> seen;
     SkillFile file;
     while (auto document = stream.next()) {
       DmpFile row = read_dmp(*document);
@@ -49,6 +52,10 @@ int main(int argc, char** argv) {
         file.header.provenance = row.header.provenance;
       } else if (row.header.columns != file.header.columns) {
         document->root().at("columns").fail("skill.mixed_settings", "the primitives have different columns");
+      }
+      const std::string name = describe(row.header.labels);
+      if (!name.empty() && !seen.insert(name).second) {
+        document->root().fail("json.group_reappears", name + " appears twice");
       }
       rows.push_back({row.header.labels, std::move(row.dmp)});
     }

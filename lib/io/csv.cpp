@@ -35,7 +35,8 @@ void CsvTable::Impl::fail_row(const std::vector<CsvCell>& cells, std::size_t f, 
   if (cells.size() < columns.size() && lines.last()) {
     fail_csv("csv.truncated", count + ": the last row is cut short", name, lines.number(), at);
   }
-  fail_csv("csv.ragged", count, name, lines.number(), at);
+  const char* hint = cells.size() > columns.size() ? " (a decimal comma? numbers need a decimal point)" : "";
+  fail_csv("csv.ragged", count + hint, name, lines.number(), at);
 }
 
 void CsvTable::Impl::check_count(const std::vector<CsvCell>& cells, std::size_t f, const LineReader& lines) const {

@@ -23,6 +23,13 @@ std::vector<Goal> read_goals(const std::string& name, const std::vector<std::str
   auto columns = signals;
   if (with_start) columns = joined(columns, starts);
   if (with_duration) columns.emplace_back("duration");
+  std::string unused;
+  for (const auto& column : table.columns()) {
+    if (column != "target" && column != "teacher" && std::find(columns.begin(), columns.end(), column) == columns.end()) {
+      unused += (unused.empty() ? "" : ", ") + column;
+    }
+  }
+  if (!unused.empty()) messages.note("csv.ignored_columns", "columns without a use here: " + unused, {name, 1, 0, ""});
   const NumericBlock block = table.read_group(0, columns);
   const auto targets = table.has("target") ? table.read_text(0, "target") : std::vector<std::string>();
   const auto teachers = table.has("teacher") ? table.read_text(0, "teacher") : std::vector<std::string>();

@@ -69,7 +69,7 @@ std::optional<JsonView> JsonView::find(std::string_view key) const {
   const Node& node = of(node_);
   if (!node.is_object()) fail("json.wrong_type", std::string("an object is needed, this is ") + kind(node));
   const auto found = node.find(std::string(key));
-  if (found == node.end() || found->is_null()) return {};
+  if (found == node.end()) return {};
   return JsonView(context_, &*found, pointer_ + pointer_part(key));
 }
 

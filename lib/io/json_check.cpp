@@ -8,8 +8,7 @@ void require_symmetric(const JsonView& at, const Matrix& A, const char* id) {
   constexpr double tolerance = 1e-9;
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
-      // In this order NaN of a negative diagonal fails too.
-      const double allowed = tolerance * std::sqrt(A(i, i) * A(j, j));
+      const double allowed = tolerance * std::sqrt(std::abs(A(i, i) * A(j, j)));
       if (!(std::abs(A(i, j) - A(j, i)) <= allowed)) {
         at.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).fail(id, "the matrix is not symmetric");
       }

@@ -12,6 +12,12 @@ CsvWriter& LabelledTable::begin(const Labels& labels) {
   } else if (names != label_columns_) {
     throw DataError("csv.labels_differ", "some groups have labels (target, teacher, demo) that others lack");
   }
+  if (!(labels == last_) || seen_.empty()) {
+    if (!seen_.insert(describe(labels)).second) {
+      throw DataError("csv.group_reappears", describe(labels) + " appears again after other groups");
+    }
+    last_ = labels;
+  }
   return *writer_;
 }
 

@@ -98,10 +98,13 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
   mean.only({"type", "coefficients"});
   process.mean = value_of(mean_names, mean.at("type"));
   const Eigen::Index rows = process.mean == MeanType::zero ? 0 : process.mean == MeanType::constant ? 1 : 1 + p;
+  if (rows == 0 && mean.has("coefficients") && mean.at("coefficients").size() > 0) {
+    mean.at("coefficients").fail("json.wrong_length", "a zero mean has no coefficients");
+  }
   process.coefficients = rows == 0 ? Matrix(0, d) : mean.at("coefficients").matrix(rows, d);
   process.X = view.at("X").matrix(n, p);
   process.Y = view.at("Y").matrix(n, d);
-  if (const auto transform = view.find("output_transform")) process.output_transform = transform->matrix(d, d);
+  if (const auto transform = view.find("output_transform"); transform && !transform->is_null()) process.output_transform = transform->matrix(d, d);
   if (const auto rule = view.find("omega_rule")) process.omega_rule = value_of(omega_names, *rule);
   process.omega = view.at("omega").matrix(d, d);
   if (process.omega_rule == OmegaRule::integrated) {

@@ -32,7 +32,7 @@ class JsonView {
  public:
   /// The member of an object. @throws [json.missing_key], [json.wrong_type] if this is no object
   [[nodiscard]] JsonView at(std::string_view key) const;
-  /// The member, or nothing if it is absent or null.
+  /// The member, or nothing if it is absent. A null is there: every getter refuses it.
   [[nodiscard]] std::optional<JsonView> find(std::string_view key) const;
   [[nodiscard]] bool has(std::string_view key) const;
   /// The keys of an object, sorted. @throws [json.wrong_type] if this is none

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ class LabelledTable {
   LabelledTable(Output& out, std::vector<std::string> columns) : out_(out), columns_(std::move(columns)) {}
 
   /// @param values  rows x columns
-  /// @throws DataError [csv.labels_differ] if the labels are not those of the first group
+  /// @throws DataError [csv.labels_differ] if the labels are not those of the first group, [csv.group_reappears]
   void write(const Labels& labels, const Samples& values);
 
   /// The writer, for rows with other cells than numbers; begins the table if it has not begun.
@@ -27,6 +28,8 @@ class LabelledTable {
   std::vector<std::string> columns_;
   std::vector<std::string> label_columns_;
   std::optional<CsvWriter> writer_;
+  std::set<std::string> seen_;  // groups written so far, as words
+  Labels last_;
 };
 
 /// {first..., second...}

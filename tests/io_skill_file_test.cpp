@@ -1,0 +1,90 @@
+#include "lfdtools/io/skill_file.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "io_fixture.hpp"
+#include "lfdtools/dmp_fit.hpp"
+#include "lfdtools/validation.hpp"
+
+using namespace lfd;
+
+namespace {
+
+SkillFile trained(const SkillOptions& options) {
+  std::vector<SkillRow> rows;
+  for (const double x : {0.1, 0.2, 0.3, 0.45}) {
+    Vector goal(2);
+    goal << x, 0.4 - x * x;
+    const Vector phases = linspace(0, 1, 60);
+    Samples path = straight_line(Vector::Zero(2), goal, phases);
+    for (Eigen::Index i = 0; i < 60; ++i) path(i, 1) += x * phases[i] * (1 - phases[i]);
+    DmpFitOptions fit;
+    fit.bases = 6;
+    rows.push_back({{std::to_string(rows.size() + 1), "ann", "1", {}}, fit_dmp({phases * (1 + x), path}, fit)});
+  }
+  return {{{"x", "y"}, {}, {}}, train_skill({"x", "y"}, rows, options)};
+}
+
+std::string text_of(const SkillFile& file, const ScratchFolder& folder) {
+  Output out(folder.file("skill.json"));
+  write_skill(file, out);
+  out.finish();
+  return content(folder.file("skill.json"));
+}
+
+SkillFile read_text(const std::string& text) {
+  CapturedMessages captured;
+  JsonOptions options;
+  options.strict = true;
+  const JsonDocument document(text, "skill.json", captured.messages, options);
+  return read_skill(document);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("a skill that is written and read again predicts the same and writes the same bytes") {
+  ScratchFolder folder;
+  for (const bool paper : {false, true}) {
+    for (const auto structure : {SkillStructure::axis, SkillStructure::full, SkillStructure::joint}) {
+      SkillOptions options;
+      options.paper = paper;
+      options.structure = structure;
+      if (!paper && structure == SkillStructure::full) options.mean = MeanType::constant;
+      const SkillFile file = trained(options);
+      const std::string text = text_of(file, folder);
+      const SkillFile back = read_text(text);
+      CHECK(text_of(back, folder) == text);
+      Vector change(2);
+      change << 0.25, 0.3;
+      CHECK(SkillPredictor(back.skill).weights(change).mean == SkillPredictor(file.skill).weights(change).mean);
+      CHECK(back.skill.duration.predict(change) == file.skill.duration.predict(change));
+      CHECK(back.skill.rows == file.skill.rows);
+    }
+  }
+}
+
+TEST_CASE("what does not fit together is refused with its place") {
+  ScratchFolder folder;
+  const std::string text = text_of(trained({}), folder);
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& id,
+                           const std::string& pointer) {
+    const Refusal refusal = refusal_of([&] { (void)read_text(replaced(text, from, to)); });
+    INFO(from << " -> " << to);
+    CHECK(refusal.id == id);
+    CHECK(refusal.place.pointer == pointer);
+  };
+  refused(R"("scaling":"none")", R"("scaling":"some")", "json.out_of_range", "/dmp/scaling");
+  refused(R"("outputs":["x"])", R"("outputs":["z"])", "skill.unknown_signal", "/models/0/outputs/0");
+  refused(R"("outputs":["x"])", R"("outputs":["y"])", "skill.outputs", "/models");
+  refused(R"("inputs":["x","y"])", R"("inputs":["x","x"])", "skill.repeated_signal", "/models/0/inputs/1");
+  refused(R"("type":"linear")", R"("type":"cubic")", "kernel.unknown_type", "/models/0/kernel/terms/1/type");
+  refused(R"("type":"zero")", R"("type":"constant")", "json.wrong_length", "/models/0/mean/coefficients");
+  refused(R"("nu":8)", R"("nu":"8")", "json.not_a_number", "/models/0/nu");
+  refused(R"("rows":[{)", R"("rows":[{"colour":1,)", "json.unknown_key", "/rows/0/colour");
+}
