@@ -19,8 +19,8 @@ Eigen::Index interval(const Vector& x, double q, Eigen::Index hint) {
   return std::clamp<Eigen::Index>(above - x.data() - 1, 0, last);
 }
 
-/// Second derivatives of the not-a-knot cubic spline: the tridiagonal system of the continuity conditions, its first and
-/// last unknown eliminated by equal third derivatives on both sides of the second and of the last but one sample.
+/// Second derivatives of the not-a-knot cubic spline: the tridiagonal system of the continuity conditions, its first
+/// and last unknown eliminated by equal third derivatives on both sides of the second and of the last but one sample.
 Samples spline_second_derivatives(const Vector& t, const Samples& y) {
   const Eigen::Index n = t.size();
   Samples m = Samples::Zero(n, y.cols());

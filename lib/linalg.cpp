@@ -22,7 +22,9 @@ Matrix cholesky(const Matrix& A) {
   return L;
 }
 
-double log_determinant_from_cholesky(const Matrix& L) { return 2 * L.diagonal().array().log().sum(); }
+double log_determinant_from_cholesky(const Matrix& L) {
+  return 2 * L.diagonal().array().log().sum();
+}
 
 Matrix cholesky_solve(const Matrix& L, const Matrix& B) {
   Matrix X = L.triangularView<Eigen::Lower>().solve(B);

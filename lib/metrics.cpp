@@ -64,8 +64,8 @@ double rms_jerk(const Samples& path, double duration) {
   const Eigen::Index n = path.rows();
   if (n < 4) return 0;
   const double h = duration / static_cast<double>(n - 1);
-  const Samples third = path.bottomRows(n - 3) - 3 * path.middleRows(2, n - 3) + 3 * path.middleRows(1, n - 3) -
-                        path.topRows(n - 3);
+  const Samples third =
+      path.bottomRows(n - 3) - 3 * path.middleRows(2, n - 3) + 3 * path.middleRows(1, n - 3) - path.topRows(n - 3);
   return std::sqrt(third.rowwise().squaredNorm().mean()) / (h * h * h);
 }
 

@@ -26,7 +26,8 @@ void check_rows(const std::vector<std::string>& columns, const std::vector<Skill
         !(row.primitive.settings == first.settings)) {
       throw DataError("skill.mixed_settings",
                       "primitives of different columns, scaling, alpha_z, beta_z, alpha_x, centers or widths make no "
-                      "skill together (" + describe(row.labels) + " differs from " + describe(rows.front().labels) + ")");
+                      "skill together (" +
+                          describe(row.labels) + " differs from " + describe(rows.front().labels) + ")");
     }
   }
   const Matrix X = changes(rows);
@@ -65,8 +66,8 @@ MvgpOptions process_options(const SkillOptions& options, int p) {
   return process;
 }
 
-/// The line through the durations, with a proper prior: the posterior mean of constant + linear kernel terms is a line, so
-/// its values at 0 and at the unit vectors give the coefficients.
+/// The line through the durations, with a proper prior: the posterior mean of constant + linear kernel terms is a line,
+/// so its values at 0 and at the unit vectors give the coefficients.
 DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptions& options) {
   const Matrix X = changes(rows);
   Matrix tau(X.rows(), 1);

@@ -21,7 +21,8 @@ std::string describe(const Labels& labels) {
 void check(const Trajectory& trajectory) {
   const auto& t = trajectory.times;
   if (trajectory.positions.rows() != t.size()) {
-    throw DataError("trajectory.shape", fmt::format("{} times but {} positions", t.size(), trajectory.positions.rows()));
+    throw DataError("trajectory.shape",
+                    fmt::format("{} times but {} positions", t.size(), trajectory.positions.rows()));
   }
   if (t.size() < 2) throw DataError("trajectory.too_short", "a trajectory needs at least two samples");
   if (!t.allFinite() || !trajectory.positions.allFinite()) {

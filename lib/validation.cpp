@@ -27,13 +27,13 @@ constexpr std::size_t neighbour_count = 4;
 struct Prepared {
   Labels labels;
   std::size_t repetitions = 0;
-  Vector start, goal;                   // means of the measured ends
-  Samples mean_path;                    // phase_count x D
-  std::vector<Samples> deviations;      // of each demonstration from its straight line, phase_count x D
-  std::vector<SkillRow> demonstrations; // fit trajectory, scaling none
-  std::optional<SkillRow> reference;    // the same fit of the GMR reference
-  std::optional<SkillRow> paper;        // fit lwr, scaling goal
-  int small_changes = 0;                // axes that the gate of the paper's scaling would refuse
+  Vector start, goal;                    // means of the measured ends
+  Samples mean_path;                     // phase_count x D
+  std::vector<Samples> deviations;       // of each demonstration from its straight line, phase_count x D
+  std::vector<SkillRow> demonstrations;  // fit trajectory, scaling none
+  std::optional<SkillRow> reference;     // the same fit of the GMR reference
+  std::optional<SkillRow> paper;         // fit lwr, scaling goal
+  int small_changes = 0;                 // axes that the gate of the paper's scaling would refuse
 
   [[nodiscard]] Vector change() const { return goal - start; }
 };
@@ -47,7 +47,9 @@ struct Predicted {
 using Fold = std::vector<const Prepared*>;
 using Predictor = std::function<Predicted(const Fold&, const Prepared&, const ValidationOptions&)>;
 
-Samples path_of(const Dmp& dmp) { return rollout(dmp, linspace(0, dmp.tau, phase_count)).positions; }
+Samples path_of(const Dmp& dmp) {
+  return rollout(dmp, linspace(0, dmp.tau, phase_count)).positions;
+}
 
 std::vector<SkillRow> rows_of(const Fold& fold, bool paper, Road road) {
   std::vector<SkillRow> rows;
@@ -173,37 +175,45 @@ struct Method {
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all = {
-      {{"skill", "the default skill"}, false,
+      {{"skill", "the default skill"},
+       false,
        [](const Fold& fold, const Prepared& query, const ValidationOptions& options) {
          return predict_by_skill(fold, query, options, false, SkillStructure::automatic);
        }},
-      {{"paper", "--paper on dmp-fit and mvgpr-train: one model an axis (Sec. III-C)"}, true,
+      {{"paper", "--paper on dmp-fit and mvgpr-train: one model an axis (Sec. III-C)"},
+       true,
        [](const Fold& fold, const Prepared& query, const ValidationOptions& options) {
          return predict_by_skill(fold, query, options, true, SkillStructure::axis);
        }},
-      {{"paper-full", "--paper with all of dP as input (Table 1)"}, true,
+      {{"paper-full", "--paper with all of dP as input (Table 1)"},
+       true,
        [](const Fold& fold, const Prepared& query, const ValidationOptions& options) {
          return predict_by_skill(fold, query, options, true, SkillStructure::full);
        }},
-      {{"line", "straight minimum-jerk line"}, false,
+      {{"line", "straight minimum-jerk line"},
+       false,
        [](const Fold&, const Prepared& query, const ValidationOptions&) {
          return Predicted{straight_line(query.start, query.goal, linspace(0, 1, phase_count)), {}};
        }},
-      {{"nearest", "weights of the target with the nearest goal - start"}, false,
+      {{"nearest", "weights of the target with the nearest goal - start"},
+       false,
        [](const Fold& fold, const Prepared& query, const ValidationOptions&) {
          return with_weights(fold, query, mean_weights(*by_distance(fold, query).front()));
        }},
-      {{"mean", "mean weights of all targets"}, false,
+      {{"mean", "mean weights of all targets"},
+       false,
        [](const Fold& fold, const Prepared& query, const ValidationOptions&) {
          Matrix sum = mean_weights(*fold.front());
          for (std::size_t i = 1; i < fold.size(); ++i) sum += mean_weights(*fold[i]);
          return with_weights(fold, query, sum / static_cast<double>(fold.size()));
        }},
-      {{"affine", "weights affine in goal - start, least squares on all demonstrations"}, false,
+      {{"affine", "weights affine in goal - start, least squares on all demonstrations"},
+       false,
        [](const Fold& fold, const Prepared& query, const ValidationOptions&) {
          return predict_affine(fold, query, false);
        }},
-      {{"affine-means", "the same on one mean a target"}, false,
+      {{"affine-means", "the same on one mean a target"},
+       false,
        [](const Fold& fold, const Prepared& query, const ValidationOptions&) {
          return predict_affine(fold, query, true);
        }},
@@ -289,7 +299,8 @@ ValidationScore score(const Predicted& predicted, const Fold& fold, const Prepar
     // Both ends are given to the method, so they are no test of its band.
     const Eigen::Index inner = phase_count - 2;
     const auto inside = ((predicted.path - query.mean_path).cwiseAbs().array() <= predicted.band.array())
-                            .middleRows(1, inner).cast<double>();
+                            .middleRows(1, inner)
+                            .cast<double>();
     result.coverage95 = inside.mean();
     result.path95 = inside.minCoeff();
   }
@@ -338,8 +349,9 @@ Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets
     throw DataError("validation.too_few_targets",
                     fmt::format("leaving one target out needs at least three targets, not {}", targets.size()));
   }
-  const bool references = options.road == Road::references ||
-                          std::any_of(chosen.begin(), chosen.end(), [](const Method* m) { return m->needs_references; });
+  const bool references =
+      options.road == Road::references ||
+      std::any_of(chosen.begin(), chosen.end(), [](const Method* m) { return m->needs_references; });
   std::vector<Prepared> prepared(targets.size());
   parallel_for(targets.size(), options.jobs,
                [&](std::size_t i) { prepared[i] = prepare(targets[i], options, references); });

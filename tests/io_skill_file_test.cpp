@@ -1,9 +1,8 @@
-#include "lfdtools/io/skill_file.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "io_fixture.hpp"
 #include "lfdtools/dmp_fit.hpp"
+#include "lfdtools/io/skill_file.hpp"
 #include "lfdtools/validation.hpp"
 
 using namespace lfd;

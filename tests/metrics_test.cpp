@@ -13,7 +13,9 @@ Trajectory sampled(int n, double duration, const std::function<Vector(double)>& 
   for (int i = 0; i < n; ++i) motion.positions.row(i) = y(duration * i / (n - 1)).transpose();
   return motion;
 }
-Vector vec(double x, double y, double z) { return (Vector(3) << x, y, z).finished(); }
+Vector vec(double x, double y, double z) {
+  return (Vector(3) << x, y, z).finished();
+}
 }  // namespace
 
 TEST_CASE("phases are linear in time, whatever the first time stamp, and rest after the last sample") {

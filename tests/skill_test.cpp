@@ -63,7 +63,8 @@ TEST_CASE("the trajectory metric measures weights by the distance of the motions
   }
 }
 
-TEST_CASE("a skill follows an intention that is affine in the goal to targets between and beside the demonstrated ones") {
+TEST_CASE(
+    "a skill follows an intention that is affine in the goal to targets between and beside the demonstrated ones") {
   for (const auto structure : {SkillStructure::automatic, SkillStructure::full, SkillStructure::joint}) {
     SkillOptions options;
     options.structure = structure;

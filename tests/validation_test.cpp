@@ -77,8 +77,8 @@ TEST_CASE("nothing of the left-out target reaches its prediction: the query's en
   ValidationOptions options;
   options.methods = {"skill", "affine", "nearest", "mean"};
   const auto before = leave_one_target_out(targets, options);
-  // The middle of one target's demonstrations changes; its own predictions may not, so that its error grows by the change
-  // alone, while predictions of the others do change.
+  // The middle of one target's demonstrations changes; its own predictions may not, so that its error grows by the
+  // change alone, while predictions of the others do change.
   for (auto& demonstration : targets[2].demonstrations) {
     const Eigen::Index T = demonstration.samples();
     for (Eigen::Index k = 0; k < T; ++k) {
@@ -94,7 +94,8 @@ TEST_CASE("nothing of the left-out target reaches its prediction: the query's en
   CHECK(std::abs(after.scores[3 * 4].rmse - before.scores[3 * 4].rmse) > 1e-4);
 }
 
-TEST_CASE("the skill beats the nearest target's weights where the intention is smooth, on both roads; jobs change nothing") {
+TEST_CASE(
+    "the skill beats the nearest target's weights where the intention is smooth, on both roads; jobs change nothing") {
   const auto targets = by_target(synthesize(small_experiment()));
   ValidationOptions options;
   options.methods = {"skill", "nearest"};

@@ -29,7 +29,9 @@ void report(const GroupAlignment& group, const Pool& pool, bool trim, cli::Run& 
                                                        group.trimmed[i].start, group.trimmed[i].end));
     }
   }
-  run.detail("align.reference", fmt::format("{} is the reference", describe(pool.recordings[static_cast<std::size_t>(group.reference)].demonstration.labels)));
+  run.detail("align.reference",
+             fmt::format("{} is the reference",
+                         describe(pool.recordings[static_cast<std::size_t>(group.reference)].demonstration.labels)));
 }
 
 void write_costs(LabelledTable& table, const Pool& pool, const Matrix& costs) {
@@ -37,7 +39,8 @@ void write_costs(LabelledTable& table, const Pool& pool, const Matrix& costs) {
     for (Eigen::Index b = a + 1; b < costs.cols(); ++b) {
       CsvWriter& writer = table.begin(pool.labels);
       writer.labels(pool.labels);
-      for (const Eigen::Index i : {a, b}) writer.text(*pool.recordings[static_cast<std::size_t>(i)].demonstration.labels.demo);
+      for (const Eigen::Index i : {a, b})
+        writer.text(*pool.recordings[static_cast<std::size_t>(i)].demonstration.labels.demo);
       writer.number(costs(a, b));
       writer.end_row();
     }
@@ -59,7 +62,8 @@ int main(int argc, char** argv) {
   program.number("--window", options.window, {0, 1, true}, "Sakoe-Chiba half-width, a fraction of the longer series");
   program.number_or_default("--trim", options.trim, default_trim, {0, 1, true},
                             "cut idle ends, where the speed is under this fraction of its peak (0.05)");
-  program.integer("--samples", samples, {2, 1'000'000}, "samples of each aligned demonstration (default: the reference's)");
+  program.integer("--samples", samples, {2, 1'000'000},
+                  "samples of each aligned demonstration (default: the reference's)");
   program.flag("--leave-out-outliers", options.leave_out_outliers, "leave out demonstrations far from the others");
   program.flag("--costs", costs, "write the pairwise DTW costs instead");
   program.example("demo-align demos.csv -o aligned.csv", "each target on the mean clock of its demonstrations");
@@ -73,8 +77,8 @@ int main(int argc, char** argv) {
     if (reference == "dba") options.reference = Reference::barycentre;
     const bool named = reference != "medoid" && reference != "longest" && reference != "dba";
     if (named) options.reference = Reference::chosen;
-    LabelledTable table(run.output(), costs ? std::vector<std::string>{"demo_a", "demo_b", "cost"}
-                                            : joined({"t"}, source.columns()));
+    LabelledTable table(run.output(),
+                        costs ? std::vector<std::string>{"demo_a", "demo_b", "cost"} : joined({"t"}, source.columns()));
     for (std::size_t i = 0; i < source.pools(); ++i) {
       Pool pool = source.pool(i);
       std::vector<Trajectory> recorded;

@@ -42,8 +42,10 @@ int main(int argc, char** argv) {
   program.reads("experiment JSON");
   program.integer("--seed", seed, {0, 9'000'000'000'000'000'000}, "seed of the noise (default: the file's)");
   program.choice("--write", wanted,
-                 {{"demonstrations", Wanted::demonstrations}, {"intentions", Wanted::intentions},
-                  {"holes", Wanted::holes}, {"new-holes", Wanted::new_holes}},
+                 {{"demonstrations", Wanted::demonstrations},
+                  {"intentions", Wanted::intentions},
+                  {"holes", Wanted::holes},
+                  {"new-holes", Wanted::new_holes}},
                  "what to write: noisy demonstrations, noise-free motions to all holes, or goals CSV");
   program.text("--target", target, "this target's demonstrations alone");
   program.integer("--repetitions", repetitions, {1, 1'000'000}, "demonstrations a target (default: the file's)");
@@ -60,10 +62,14 @@ int main(int argc, char** argv) {
       if (experiment.holes.empty()) throw UsageError("synth.no_target", fmt::format("there is no hole '{}'", target));
     }
     switch (wanted) {
-      case Wanted::intentions: return write_intentions(experiment, run.output());
-      case Wanted::holes: return write_holes(experiment.holes, experiment.columns, run.output());
-      case Wanted::new_holes: return write_holes(experiment.new_holes, experiment.columns, run.output());
-      case Wanted::demonstrations: break;
+      case Wanted::intentions:
+        return write_intentions(experiment, run.output());
+      case Wanted::holes:
+        return write_holes(experiment.holes, experiment.columns, run.output());
+      case Wanted::new_holes:
+        return write_holes(experiment.new_holes, experiment.columns, run.output());
+      case Wanted::demonstrations:
+        break;
     }
     LabelledTable table(run.output(), joined({"t"}, experiment.columns));
     for (const auto& demonstration : synthesize(experiment).demonstrations) {

@@ -22,15 +22,17 @@ std::vector<std::string> present(const CsvTable& table, const std::string& prefi
 }
 
 /// Refuses (or warns of) axes that hardly move from start to goal, where the paper's scaling divides by almost nothing.
-void gate_small_changes(const Recording& recording, const std::vector<std::string>& signals, const DmpFitOptions& options,
-                        cli::Run& run) {
+void gate_small_changes(const Recording& recording, const std::vector<std::string>& signals,
+                        const DmpFitOptions& options, cli::Run& run) {
   const Trajectory& path = recording.demonstration.trajectory;
   const auto small = small_goal_change(path, options.start.value_or(path.start()), options.goal.value_or(path.goal()));
   for (std::size_t j = 0; j < small.size(); ++j) {
     if (!small[j]) continue;
-    run.refuse("goal_change", fmt::format("{}{}: |goal - start| is under 1 % of the excursion, too little to scale by",
-                                          recording.demonstration.labels.target ? describe(recording.demonstration.labels) + ", " : "",
-                                          signals[j]), recording.place(0));
+    run.refuse("goal_change",
+               fmt::format("{}{}: |goal - start| is under 1 % of the excursion, too little to scale by",
+                           recording.demonstration.labels.target ? describe(recording.demonstration.labels) + ", " : "",
+                           signals[j]),
+               recording.place(0));
   }
 }
 

@@ -70,8 +70,9 @@ int main(int argc, char** argv) {
                                                                 describe(pool.labels), selection.fit.iterations));
       }
       for (const auto& collapse : selection.fit.collapses) {
-        run.messages().note("gmm.collapse", fmt::format("{}: component {} had collapsed and was started again (iteration {})",
-                                                        describe(pool.labels), collapse.component + 1, collapse.iteration));
+        run.messages().note("gmm.collapse",
+                            fmt::format("{}: component {} had collapsed and was started again (iteration {})",
+                                        describe(pool.labels), collapse.component + 1, collapse.iteration));
       }
       run.figure(fmt::format("components_{}", i + 1), static_cast<double>(selection.fit.gmm.components()));
       file.header = {joined({"t"}, source.columns()), pool.labels, {entry}};

@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
       rows = beside(rows, file.goal.transpose().replicate(samples, 1));
       if (sd) {
         Samples spread(samples, D);
-        for (Eigen::Index i = 0; i < samples; ++i) spread.row(i) = path.covariance[i].diagonal().cwiseSqrt().transpose();
+        for (Eigen::Index i = 0; i < samples; ++i)
+          spread.row(i) = path.covariance[i].diagonal().cwiseSqrt().transpose();
         rows = beside(rows, spread);
       }
       if (covariance) {

@@ -42,8 +42,9 @@ int main(int argc, char** argv) {
     if (motions.columns() != references.columns()) {
       throw DataError("compare.columns_differ", "motions and references have different signals");
     }
-    LabelledTable table(run.output(), joined({"rmse", "end_error", "arrival_angle", "lateral", "jerk", "path_length", "duration"},
-                                             prefixed("arrival_", motions.columns())));
+    LabelledTable table(run.output(),
+                        joined({"rmse", "end_error", "arrival_angle", "lateral", "jerk", "path_length", "duration"},
+                               prefixed("arrival_", motions.columns())));
     const auto D = static_cast<Eigen::Index>(motions.columns().size());
     for (std::size_t i = 0; i < motions.recordings(); ++i) {
       const Demonstration motion = motions.recording(i).demonstration;

@@ -19,11 +19,15 @@ int main(int argc, char** argv) {
   program.flag("--paper", options.paper,
                "the published process: a model an axis, zero mean, se-ard, plain weights (see --model for Table 1)");
   program.choice("--model", options.structure,
-                 {{"auto", SkillStructure::automatic}, {"axis", SkillStructure::axis}, {"full", SkillStructure::full},
+                 {{"auto", SkillStructure::automatic},
+                  {"axis", SkillStructure::axis},
+                  {"full", SkillStructure::full},
                   {"joint", SkillStructure::joint}},
                  "what speaks for what: each axis for itself, all for each axis (Table 1), all for all");
   program.choice("--kernel", kernel,
-                 {{"sum", KernelType::constant}, {"se-ard", KernelType::se_ard}, {"matern32", KernelType::matern32},
+                 {{"sum", KernelType::constant},
+                  {"se-ard", KernelType::se_ard},
+                  {"matern32", KernelType::matern32},
                   {"matern52", KernelType::matern52}},
                  "covariance function; sum: constant + linear + se-ard an input + se-ard over all");
   program.choice("--mean", mean,
@@ -34,7 +38,8 @@ int main(int argc, char** argv) {
   program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");
   program.example("dmp-fit reference.csv | mvgpr-train -o skill.json", "one row a target");
   program.example("demo-align demos.csv | dmp-fit | mvgpr-train -o skill.json", "every demonstration a row");
-  program.example("dmp-fit --paper reference.csv | mvgpr-train --paper --model full", "Table 1 of the paper, literally");
+  program.example("dmp-fit --paper reference.csv | mvgpr-train --paper --model full",
+                  "Table 1 of the paper, literally");
   return program.run(argc, argv, [&](cli::Run& run) {
     if (program.given("--kernel") && kernel != KernelType::constant) options.kernel = kernel;
     if (program.given("--mean")) options.mean = mean;
@@ -62,7 +67,8 @@ int main(int argc, char** argv) {
     file.skill = train_skill(file.header.columns, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     for (std::size_t m = 0; m < file.skill.models.size(); ++m) {
-      run.figure(fmt::format("log_marginal_likelihood_{}", m + 1), file.skill.models[m].process.log_marginal_likelihood);
+      run.figure(fmt::format("log_marginal_likelihood_{}", m + 1),
+                 file.skill.models[m].process.log_marginal_likelihood);
     }
     write_skill(file, run.output());
   });

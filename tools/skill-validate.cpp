@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
   program.words("--methods", options.methods, "methods to compare (default: all)");
   program.choice("--road", options.road, {{"demonstrations", Road::demonstrations}, {"references", Road::references}},
                  "rows of the default skill: every demonstration, or one GMM-GMR reference a target");
-  program.number_or_default("--trim", options.alignment.trim, default_trim, {0, 1, true}, "cut idle ends first, as demo-align does");
+  program.number_or_default("--trim", options.alignment.trim, default_trim, {0, 1, true},
+                            "cut idle ends first, as demo-align does");
   program.integer("-n,--basis", bases, {2, 10'000}, "basis functions");
   program.integer_range("-k,--components", components, {1, 10'000}, "components of the references, chosen by BIC");
   program.flag("--table", table, "a readable table of rmse in millimetres instead of CSV");
@@ -76,7 +77,8 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
       Pool pool = source.pool(i);
       targets[i].labels = pool.labels;
-      for (auto& recording : pool.recordings) targets[i].demonstrations.push_back(std::move(recording.demonstration.trajectory));
+      for (auto& recording : pool.recordings)
+        targets[i].demonstrations.push_back(std::move(recording.demonstration.trajectory));
     }
     options.bases = bases;
     options.k_from = components.first;
@@ -85,8 +87,10 @@ int main(int argc, char** argv) {
     options.jobs = run.jobs();
     const Validation validation = leave_one_target_out(targets, options);
     if (validation.lifted_gates > 0) {
-      run.messages().note("validate.lifted_gate", fmt::format("the gate goal_change of --scaling goal would have refused {} "
-                                                              "training rows of --paper", validation.lifted_gates));
+      run.messages().note("validate.lifted_gate",
+                          fmt::format("the gate goal_change of --scaling goal would have refused {} "
+                                      "training rows of --paper",
+                                      validation.lifted_gates));
     }
     table ? write_table(validation, run.output()) : write_scores(validation, run.output());
   });

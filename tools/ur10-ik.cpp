@@ -25,14 +25,17 @@ void write_all_solutions(const InverseKinematics& arm, const Recording& recordin
     if (solutions.empty()) run.messages().warning("ik.unreachable", "the pose is out of reach", recording.place(row));
     for (std::size_t k = 0; k < solutions.size(); ++k) {
       Samples cells(1, 8);
-      cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1), solutions[k].joints.transpose();
+      cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1),
+          solutions[k].joints.transpose();
       table.write(recording.demonstration.labels, cells);
     }
   }
 }
 
 /// qd by the spline through the joints, so that it does not lag half a sample.
-Samples joint_speeds(const Vector& times, const Samples& joints) { return CubicSpline(times, joints).derivative(times); }
+Samples joint_speeds(const Vector& times, const Samples& joints) {
+  return CubicSpline(times, joints).derivative(times);
+}
 
 }  // namespace
 

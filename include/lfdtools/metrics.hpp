@@ -1,12 +1,13 @@
-// Figures of a motion: how far from another, how it arrives, how smooth it is. Used by validation and by motion-compare.
+// Figures of a motion: how far from another, how it arrives, how smooth it is. Used by validation and by
+// motion-compare.
 #pragma once
 
 #include "lfdtools/trajectory.hpp"
 
 namespace lfd {
 
-/// The path at n equally spaced phases s in [0, 1] of the given duration, n x D (cubic spline; after the last sample the
-/// motion rests). Phases are linear in time, so nothing is aligned.
+/// The path at n equally spaced phases s in [0, 1] of the given duration, n x D (cubic spline; after the last sample
+/// the motion rests). Phases are linear in time, so nothing is aligned.
 /// @param duration  seconds that s = 1 stands for; 0: the whole trajectory
 [[nodiscard]] Samples at_phases(const Trajectory& trajectory, Eigen::Index n, double duration = 0.0);
 
@@ -29,8 +30,8 @@ struct Arrival {
 /// Angle between two directions of arrival [rad], from 0 to pi.
 [[nodiscard]] double angle_between(const Vector& a, const Vector& b);
 
-/// Largest distance [m] of the path's last stretch (inside the ball of `radius` about `line.end`) from the straight line
-/// through line.end along line.direction.
+/// Largest distance [m] of the path's last stretch (inside the ball of `radius` about `line.end`) from the straight
+/// line through line.end along line.direction.
 [[nodiscard]] double lateral_deviation(const Samples& path, const Arrival& line, double radius = 0.02);
 
 /// Root mean square of the third time derivative [m/s^3]: third differences on n equally spaced times.

@@ -30,7 +30,8 @@ enum class SkillStructure {
 
 struct SkillOptions {
   SkillStructure structure = SkillStructure::automatic;
-  /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means `axis`.
+  /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means
+  /// `axis`.
   bool paper = false;
   /// One term of this type in place of the default sum of terms.
   std::optional<KernelType> kernel;
@@ -50,9 +51,9 @@ struct SkillModel {
 
 /// tau = mean + coefficients . dP, kept inside `range`.
 struct DurationModel {
-  double mean = 1;         ///< at dP = 0 [s]
-  Vector coefficients;     ///< D [s/m]
-  double sd = 0;           ///< of a demonstration about the line [s]
+  double mean = 1;           ///< at dP = 0 [s]
+  Vector coefficients;       ///< D [s/m]
+  double sd = 0;             ///< of a demonstration about the line [s]
   double range[2] = {1, 1};  ///< shortest and longest demonstrated [s]
 
   [[nodiscard]] double predict(const Vector& change) const;
@@ -108,7 +109,8 @@ class SkillPredictor {
   /// @param change  dP, D [m]
   [[nodiscard]] WeightPrediction weights(const Vector& change) const;
   /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Rows fitted by
-  /// `trajectory` all meet the condition y(tau) = g, which is linear in the weights, so predictions mixed from them meet it too.
+  /// `trajectory` all meet the condition y(tau) = g, which is linear in the weights, so predictions mixed from them
+  /// meet it too.
   [[nodiscard]] Dmp primitive(const Goal& goal) const;
 
  private:
@@ -116,8 +118,8 @@ class SkillPredictor {
   std::vector<MvgpPredictor> predictors_;
 };
 
-/// The motion of a primitive on times 0, dt, 2 dt, ... tau and on until it rests on its goal (settle_time). The last sample
-/// is the first of the grid that rests.
+/// The motion of a primitive on times 0, dt, 2 dt, ... tau and on until it rests on its goal (settle_time). The last
+/// sample is the first of the grid that rests.
 /// @param dt  [s]; tau / 200 if empty
 /// @throws DataError [skill.dt] if that makes over 10^7 samples; those of settle_time
 [[nodiscard]] Motion generate(const Dmp& primitive, std::optional<double> dt = {});

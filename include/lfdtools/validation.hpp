@@ -44,12 +44,12 @@ struct ValidationOptions {
 
 /// How a method did on a target that it had not seen.
 struct ValidationScore {
-  Labels labels;             ///< of the left-out target
+  Labels labels;  ///< of the left-out target
   std::string method;
-  double rmse = 0;           ///< to the target's mean path at equal phases [m]
-  double end_error = 0;      ///< distance from the goal at tau [m]
-  double dtw = 0;            ///< mean distance along the cheapest DTW path to the mean path [m]
-  double outside = 0;        ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
+  double rmse = 0;                   ///< to the target's mean path at equal phases [m]
+  double end_error = 0;              ///< distance from the goal at tau [m]
+  double dtw = 0;                    ///< mean distance along the cheapest DTW path to the mean path [m]
+  double outside = 0;                ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
   std::optional<double> coverage95;  ///< share of samples of the mean path inside the 95 % band; empty: no band
   std::optional<double> path95;      ///< 1 if the whole mean path is inside, else 0
 };
@@ -60,11 +60,12 @@ struct Validation {
   int lifted_gates = 0;
 };
 
-/// Scores are taken on 200 phases. The mean path of a target is linear in each demonstration's own time, so that it owes
-/// nothing to the alignment under test. The left-out target's mean start and goal are the query. `outside` looks at
-/// deviations from the straight minimum-jerk line between start and goal: at each phase the box that the deviations of
-/// the demonstrations of the four nearest training targets span.
-/// @throws DataError [validation.too_few_targets] under three targets; UsageError [validation.method]; those of the stages
+/// Scores are taken on 200 phases. The mean path of a target is linear in each demonstration's own time, so that it
+/// owes nothing to the alignment under test. The left-out target's mean start and goal are the query. `outside` looks
+/// at deviations from the straight minimum-jerk line between start and goal: at each phase the box that the deviations
+/// of the demonstrations of the four nearest training targets span.
+/// @throws DataError [validation.too_few_targets] under three targets; UsageError [validation.method]; those of the
+/// stages
 [[nodiscard]] Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets,
                                               const ValidationOptions& options);
 

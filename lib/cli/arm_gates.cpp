@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-
 namespace lfd::cli {
 
 void declare_arm_gates(Program& program, ArmLimits& limits) {
   program.number("--max-tcp-speed", limits.tcp_speed, positive, "largest speed of the tool tip [m/s]");
-  program.number("--max-tcp-acceleration", limits.tcp_acceleration, positive, "largest acceleration of the tool tip [m/s^2]");
+  program.number("--max-tcp-acceleration", limits.tcp_acceleration, positive,
+                 "largest acceleration of the tool tip [m/s^2]");
   program.number("--max-condition", limits.condition, positive, "largest condition number of the Jacobian");
   program.gate("unreachable", "a pose out of reach")
       .gate("joint_range", "no way through the poses within the joint ranges")
@@ -29,11 +29,20 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
     run.refuse(gate, name + text, recording.place(sample));
   };
   switch (path.status) {
-    case PathStatus::unreachable: refuse("unreachable", path.sample, path.reason); break;
-    case PathStatus::outside_limits: refuse("joint_range", path.sample, path.reason); break;
-    case PathStatus::jump: refuse("joint_step", path.sample, path.reason); break;
-    case PathStatus::deviates: refuse("midpoint", path.sample, path.reason); break;
-    case PathStatus::continuous: break;
+    case PathStatus::unreachable:
+      refuse("unreachable", path.sample, path.reason);
+      break;
+    case PathStatus::outside_limits:
+      refuse("joint_range", path.sample, path.reason);
+      break;
+    case PathStatus::jump:
+      refuse("joint_step", path.sample, path.reason);
+      break;
+    case PathStatus::deviates:
+      refuse("midpoint", path.sample, path.reason);
+      break;
+    case PathStatus::continuous:
+      break;
   }
   if (path.joints.rows() == 0) return false;
   for (std::size_t k = 1; k < path.branch.size(); ++k) {
@@ -66,7 +75,8 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
   const Worst condition = worst(path.condition);
   if (condition.value > limits.condition) {
     refuse("condition", condition.sample,
-           fmt::format("the condition number is {:.1f}, over {:g}: a singularity is near", condition.value, limits.condition));
+           fmt::format("the condition number is {:.1f}, over {:g}: a singularity is near", condition.value,
+                       limits.condition));
   } else if (condition.value > limits.condition_warning) {
     run.messages().warning("ik.condition", fmt::format("{}the condition number comes to {:.1f}", name, condition.value),
                            recording.place(condition.sample));

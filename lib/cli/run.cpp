@@ -54,14 +54,16 @@ void Run::detail(std::string_view id, const std::string& text) {
   if (options_.verbose) messages_.note(id, text);
 }
 
-void Run::figure(const std::string& name, double value) { figures_.emplace_back(name, value); }
+void Run::figure(const std::string& name, double value) {
+  figures_.emplace_back(name, value);
+}
 
 void Run::finish() {
   if (output_) output_->finish();
   if (options_.summary.empty()) return;
   std::string header = "program,version,inputs,arguments";
-  std::string row = fmt::format("{},{},{},{}", provenance_.program, provenance_.version, quoted(joined(options_.inputs)),
-                                quoted(joined(provenance_.arguments)));
+  std::string row = fmt::format("{},{},{},{}", provenance_.program, provenance_.version,
+                                quoted(joined(options_.inputs)), quoted(joined(provenance_.arguments)));
   for (const auto& [name, value] : figures_) {
     header += "," + name;
     row += "," + number_text(value);

@@ -25,7 +25,8 @@ std::string find_data_file(const std::string& name, const std::string& folder) {
     if (fs::is_regular_file(path, ignored)) return path.string();
     looked += (looked.empty() ? "" : ", ") + path.string();
   }
-  throw Error(Fault::no_input, "input.not_found", fmt::format("there is no '{}' in {} (looked for {})", name, folder, looked));
+  throw Error(Fault::no_input, "input.not_found",
+              fmt::format("there is no '{}' in {} (looked for {})", name, folder, looked));
 }
 
 }  // namespace lfd

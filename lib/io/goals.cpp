@@ -25,7 +25,8 @@ std::vector<Goal> read_goals(const std::string& name, const std::vector<std::str
   if (with_duration) columns.emplace_back("duration");
   std::string unused;
   for (const auto& column : table.columns()) {
-    if (column != "target" && column != "teacher" && std::find(columns.begin(), columns.end(), column) == columns.end()) {
+    if (column != "target" && column != "teacher" &&
+        std::find(columns.begin(), columns.end(), column) == columns.end()) {
       unused += (unused.empty() ? "" : ", ") + column;
     }
   }

@@ -21,7 +21,9 @@ CsvWriter& LabelledTable::begin(const Labels& labels) {
   return *writer_;
 }
 
-void LabelledTable::write(const Labels& labels, const Samples& values) { begin(labels).rows(labels, values); }
+void LabelledTable::write(const Labels& labels, const Samples& values) {
+  begin(labels).rows(labels, values);
+}
 
 std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
   first.insert(first.end(), second.begin(), second.end());

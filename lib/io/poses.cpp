@@ -3,7 +3,9 @@
 namespace lfd {
 namespace {
 
-Quaternion quaternion(const double* w) { return Eigen::Map<const Quaternion>(w); }
+Quaternion quaternion(const double* w) {
+  return Eigen::Map<const Quaternion>(w);
+}
 
 }  // namespace
 

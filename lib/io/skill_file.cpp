@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -11,7 +12,6 @@
 
 namespace lfd {
 namespace {
-
 
 constexpr std::array<std::pair<MeanType, std::string_view>, 3> mean_names{
     {{MeanType::zero, "zero"}, {MeanType::constant, "constant"}, {MeanType::linear, "linear"}}};
@@ -37,7 +37,8 @@ std::vector<int> indices(const JsonView& view, const std::vector<std::string>& a
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::string name = view.at(i).string();
     const auto found = std::find(among.begin(), among.end(), name);
-    if (found == among.end()) view.at(i).fail("skill.unknown_signal", fmt::format("there is no signal '{}' here", name));
+    if (found == among.end())
+      view.at(i).fail("skill.unknown_signal", fmt::format("there is no signal '{}' here", name));
     const int index = static_cast<int>(found - among.begin());
     if (std::find(result.begin(), result.end(), index) != result.end()) {
       view.at(i).fail("skill.repeated_signal", fmt::format("signal '{}' stands twice", name));
@@ -51,6 +52,16 @@ std::vector<std::string> names(const std::vector<int>& positions, const std::vec
   std::vector<std::string> result;
   for (const int position : positions) result.push_back(among[static_cast<std::size_t>(position)]);
   return result;
+}
+
+/// Omega and Psi are covariances; outputs in proportion may leave them without extent in some directions.
+void check_covariance(const JsonView& view, const Matrix& A) {
+  require_symmetric(view, A, "skill.not_symmetric");
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(A, Eigen::EigenvaluesOnly);
+  const Vector& values = solver.eigenvalues();
+  if (solver.info() != Eigen::Success || values[0] < -1e-9 * std::max(values[values.size() - 1], 0.0)) {
+    view.fail("skill.not_positive_definite", "the covariance has a negative direction");
+  }
 }
 
 KernelTerm read_term(const JsonView& view, const std::vector<std::string>& inputs, bool term_of_sum) {
@@ -81,8 +92,8 @@ Kernel read_kernel(const JsonView& view, const std::vector<std::string>& inputs)
 }
 
 SkillModel read_model(const JsonView& view, const std::vector<std::string>& columns, Eigen::Index n, Eigen::Index N) {
-  view.only({"inputs", "outputs", "kernel", "noise_variance", "noise", "mean", "X", "Y", "output_transform", "omega_rule",
-             "omega", "nu", "psi", "log_marginal_likelihood"});
+  view.only({"inputs", "outputs", "kernel", "noise_variance", "noise", "mean", "X", "Y", "output_transform",
+             "omega_rule", "omega", "nu", "psi", "log_marginal_likelihood"});
   SkillModel model;
   model.inputs = indices(view.at("inputs"), columns);
   model.outputs = indices(view.at("outputs"), columns);
@@ -104,7 +115,8 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
   process.coefficients = rows == 0 ? Matrix(0, d) : mean.at("coefficients").matrix(rows, d);
   process.X = view.at("X").matrix(n, p);
   process.Y = view.at("Y").matrix(n, d);
-  if (const auto transform = view.find("output_transform"); transform && !transform->is_null()) process.output_transform = transform->matrix(d, d);
+  if (const auto transform = view.find("output_transform"); transform && !transform->is_null())
+    process.output_transform = transform->matrix(d, d);
   if (const auto rule = view.find("omega_rule")) process.omega_rule = value_of(omega_names, *rule);
   process.omega = view.at("omega").matrix(d, d);
   if (process.omega_rule == OmegaRule::integrated) {
@@ -113,6 +125,9 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
     process.psi = psi.is_array() ? psi.matrix(d, d) : Matrix::Constant(1, 1, psi.positive());
   }
   process.log_marginal_likelihood = view.at("log_marginal_likelihood").number();
+  if (process.omega_rule == OmegaRule::integrated && process.psi.size() > 1)
+    check_covariance(view.at("psi"), process.psi);
+  check_covariance(view.at("omega"), process.omega);
   checked(view, [&] { (void)MvgpPredictor(process); });
   return model;
 }
@@ -190,8 +205,8 @@ SkillFile read_skill(const JsonDocument& document) {
   const JsonView models = root.at("models");
   std::vector<int> given(skill.columns.size(), 0);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    skill.models.push_back(read_model(models.at(i), skill.columns, static_cast<Eigen::Index>(skill.rows.size()),
-                                      skill.dmp.bases()));
+    skill.models.push_back(
+        read_model(models.at(i), skill.columns, static_cast<Eigen::Index>(skill.rows.size()), skill.dmp.bases()));
     for (const int output : skill.models.back().outputs) ++given[static_cast<std::size_t>(output)];
   }
   for (std::size_t j = 0; j < given.size(); ++j) {

@@ -28,9 +28,9 @@ inline constexpr double infinity = 1e308;
 inline constexpr Range<double> positive{0.0, infinity, true};
 inline constexpr Range<double> not_negative{0.0, infinity};
 
-/// The declaration of a program. Every option function binds a variable, whose value at that moment is the default shown
-/// by --help; each value is checked before any input is read. Values are decimal: `010`, `0x10`, `1e3` are no integers,
-/// `nan` and `inf` no numbers.
+/// The declaration of a program. Every option function binds a variable, whose value at that moment is the default
+/// shown by --help; each value is checked before any input is read. Values are decimal: `010`, `0x10`, `1e3` are no
+/// integers, `nan` and `inf` no numbers.
 ///
 /// Options that change the result are recorded, in the order of their declaration and unless they have their default
 /// value, as the canonical `arguments` of the provenance; `path` options and the shared ones are not.
@@ -62,10 +62,10 @@ class Program {
   /// A number that may be left out after its option (`--trim` or `--trim=0.1`).
   Program& number_or_default(const std::string& names, std::optional<double>& value, double otherwise,
                              Range<double> range, const std::string& doc);
-  /// Comma-separated numbers, exactly `arity` of them.
-  Program& numbers(const std::string& names, std::optional<std::vector<double>>& value, std::vector<std::size_t> arities,
-                   const std::string& doc);
-  /// The same, repeatable.
+  /// Comma-separated numbers, as many as one of `arities` says (none: any number of them).
+  Program& numbers(const std::string& names, std::optional<std::vector<double>>& value,
+                   std::vector<std::size_t> arities, const std::string& doc);
+  /// The same, repeatable; `arity` 0: any number of them.
   Program& number_lists(const std::string& names, std::vector<std::vector<double>>& value, std::size_t arity,
                         const std::string& doc);
   /// One integer, or a range `low:high`.

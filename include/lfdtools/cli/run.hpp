@@ -20,13 +20,13 @@ namespace lfd::cli {
 
 /// Options of every program that they apply to.
 struct CommonOptions {
-  std::vector<std::string> inputs;   ///< empty: standard input
-  std::string output;                ///< empty: standard output
+  std::vector<std::string> inputs;  ///< empty: standard input
+  std::string output;               ///< empty: standard output
   bool quiet = false;
   bool verbose = false;
-  bool strict = false;               ///< unknown JSON keys are refused
-  bool renumber = false;             ///< later files get new demo numbers
-  std::int64_t jobs = 0;             ///< 0: one a processor
+  bool strict = false;    ///< unknown JSON keys are refused
+  bool renumber = false;  ///< later files get new demo numbers
+  std::int64_t jobs = 0;  ///< 0: one a processor
   std::int64_t seed = 1;
   std::vector<std::string> columns;  ///< signals; empty: by rule
   std::string summary;               ///< file that gets one row about this run

@@ -24,8 +24,7 @@ namespace lfd::cli {
 [[nodiscard]] std::vector<double> number_list(std::string_view option, std::string_view word);
 
 /// `4` (meaning 4:4) or `1:12`, low no greater than high.
-[[nodiscard]] std::pair<std::int64_t, std::int64_t> integer_range_value(std::string_view option,
-                                                                        std::string_view word);
+[[nodiscard]] std::pair<std::int64_t, std::int64_t> integer_range_value(std::string_view option, std::string_view word);
 
 /// Comma-separated words, none empty, none twice.
 [[nodiscard]] std::vector<std::string> word_list(std::string_view option, std::string_view word);
