@@ -184,7 +184,6 @@ double Evidence::operator()(const Vector& theta, Vector* gradient) {
   kernel_matrix_.gradient(K_, gradient->head(kernel_size_));
   (*gradient)(kernel_size_) = std::exp(theta(kernel_size_)) * K_.diagonal().dot(row_noise_);
   return value;
-  return value;
 }
 
 }  // namespace lfd

@@ -60,6 +60,11 @@ double lateral_deviation(const Samples& path, const Arrival& line, double radius
   return largest;
 }
 
+double overshoot(const Samples& path, const Arrival& line) {
+  const Vector beyond = (path.rowwise() - line.end.transpose()) * line.direction;
+  return std::max(0.0, beyond.maxCoeff());
+}
+
 double rms_jerk(const Samples& path, double duration) {
   const Eigen::Index n = path.rows();
   if (n < 4) return 0;

@@ -54,9 +54,12 @@ std::vector<SkillModel> structure(SkillStructure wanted, bool paper, int D) {
 
 MvgpOptions process_options(const SkillOptions& options, int p) {
   MvgpOptions process = options.paper ? paper_mvgp_options(p) : default_mvgp_options(p);
-  if (options.kernel) {
+  if (options.kernel == SkillKernel::sum) {
+    process.kernel = sum_kernel(p);
+  } else if (options.kernel != SkillKernel::automatic) {
     process.kernel = se_ard_kernel(p);
-    process.kernel.terms.front().type = *options.kernel;
+    if (options.kernel == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
+    if (options.kernel == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
   }
   if (options.mean) process.mean = *options.mean;
   process.omega = options.omega;

@@ -33,7 +33,7 @@ struct Prepared {
   std::vector<SkillRow> demonstrations;  // fit trajectory, scaling none
   std::optional<SkillRow> reference;     // the same fit of the GMR reference
   std::optional<SkillRow> paper;         // fit lwr, scaling goal
-  int small_changes = 0;                 // axes that the gate of the paper's scaling would refuse
+  bool small_change = false;             // the gate of the paper's scaling would refuse it
 
   [[nodiscard]] Vector change() const { return goal - start; }
 };
@@ -267,7 +267,7 @@ Prepared prepare(const TargetDemonstrations& target, const ValidationOptions& op
   fit.allow_small_scale = true;
   prepared.paper = SkillRow{target.labels, fit_dmp(reference.path, fit)};
   for (const bool small : small_goal_change(reference.path, reference.start, reference.goal)) {
-    prepared.small_changes += small ? 1 : 0;
+    prepared.small_change = prepared.small_change || small;
   }
   return prepared;
 }
@@ -298,9 +298,11 @@ ValidationScore score(const Predicted& predicted, const Fold& fold, const Prepar
   if (predicted.band.size() > 0) {
     // Both ends are given to the method, so they are no test of its band.
     const Eigen::Index inner = phase_count - 2;
-    const auto inside = ((predicted.path - query.mean_path).cwiseAbs().array() <= predicted.band.array())
-                            .middleRows(1, inner)
-                            .cast<double>();
+    const Vector inside = ((predicted.path - query.mean_path).cwiseAbs().array() <= predicted.band.array())
+                              .middleRows(1, inner)
+                              .rowwise()
+                              .all()
+                              .cast<double>();
     result.coverage95 = inside.mean();
     result.path95 = inside.minCoeff();
   }
@@ -349,9 +351,8 @@ Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets
     throw DataError("validation.too_few_targets",
                     fmt::format("leaving one target out needs at least three targets, not {}", targets.size()));
   }
-  const bool references =
-      options.road == Road::references ||
-      std::any_of(chosen.begin(), chosen.end(), [](const Method* m) { return m->needs_references; });
+  const bool paper = std::any_of(chosen.begin(), chosen.end(), [](const Method* m) { return m->needs_references; });
+  const bool references = paper || options.road == Road::references;
   std::vector<Prepared> prepared(targets.size());
   parallel_for(targets.size(), options.jobs,
                [&](std::size_t i) { prepared[i] = prepare(targets[i], options, references); });
@@ -369,7 +370,7 @@ Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets
     validation.scores[job] = score(method.predict(fold, query, options), fold, query, method.description.name);
   });
   for (const auto& target : prepared) {
-    validation.lifted_gates += target.small_changes * static_cast<int>(targets.size() - 1);
+    if (paper && target.small_change) validation.lifted_gates += static_cast<int>(targets.size() - 1);
   }
   return validation;
 }

@@ -64,3 +64,10 @@ TEST_CASE("the jerk of a cubic is its constant third derivative, the length of a
   CHECK(rms_jerk(motion.positions, 2) == Approx(6).epsilon(1e-6));
   CHECK(path_length(sampled(9, 1, [](double t) { return vec(3 * t, 4 * t, 0); }).positions) == Approx(5));
 }
+
+TEST_CASE("overshoot is the depth beyond the end along the direction of arrival") {
+  Samples path(3, 3);
+  path << 0, 0, 0.1, 0.01, 0, -0.02, 0, 0, 0;
+  CHECK(overshoot(path, Arrival{vec(0, 0, 0), vec(0, 0, -1)}) == Approx(0.02));
+  CHECK(overshoot(path.topRows(1), Arrival{vec(0, 0, 0), vec(0, 0, -1)}) == 0);
+}

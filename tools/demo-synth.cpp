@@ -36,6 +36,7 @@ void write_holes(const std::vector<Hole>& holes, const std::vector<std::string>&
 int main(int argc, char** argv) {
   Wanted wanted = Wanted::demonstrations;
   std::string target;
+  bool no_obstacle = false;
   std::optional<std::int64_t> repetitions;
   std::optional<std::int64_t> seed;
   cli::Program program("demo-synth", "Make the demonstrations that an experiment file describes.");
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
                   {"holes", Wanted::holes},
                   {"new-holes", Wanted::new_holes}},
                  "what to write: noisy demonstrations, noise-free motions to all holes, or goals CSV");
+  program.flag("--no-obstacle", no_obstacle, "as if the obstacle were not there: what the teacher would do without it");
   program.text("--target", target, "this target's demonstrations alone");
   program.integer("--repetitions", repetitions, {1, 1'000'000}, "demonstrations a target (default: the file's)");
   program.example("demo-synth A.json -o demos.csv", "ten demonstrations to each of nine holes");
@@ -56,6 +58,7 @@ int main(int argc, char** argv) {
     Experiment experiment = read_experiment(*stream.next());
     if (stream.next()) throw DataError("json.one_document", "an experiment is one document");
     if (seed) experiment.seed = static_cast<std::uint64_t>(*seed);
+    if (no_obstacle) experiment.obstacle.reset();
     if (repetitions) experiment.repetitions = *repetitions;
     if (!target.empty()) {
       std::erase_if(experiment.holes, [&](const Hole& hole) { return hole.target != target; });

@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
       if (sd >= 0) options.sd = recording.extras.middleCols(sd, D);
       if (options.scaling == DmpScaling::goal) gate_small_changes(recording, signals, options, run);
       const Dmp dmp = fit_dmp(recording.demonstration.trajectory, options);
-      run.figure(fmt::format("rmse_{}", i + 1), std::sqrt(dmp.rmse.squaredNorm()));
+      run.figure("largest_rmse", std::sqrt(dmp.rmse.squaredNorm()));
       write_dmp({{signals, recording.demonstration.labels, {entry}}, dmp}, run.output());
     }
   });

@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
                             fmt::format("{}: component {} had collapsed and was started again (iteration {})",
                                         describe(pool.labels), collapse.component + 1, collapse.iteration));
       }
-      run.figure(fmt::format("components_{}", i + 1), static_cast<double>(selection.fit.gmm.components()));
+      run.figure("most_components", static_cast<double>(selection.fit.gmm.components()));
       file.header = {joined({"t"}, source.columns()), pool.labels, {entry}};
       file.gmm = std::move(selection.fit.gmm);
       file.regularization = selection.fit.regularization;

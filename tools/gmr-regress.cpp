@@ -1,4 +1,6 @@
 // Gaussian mixture regression: one reference path a target (paper eq. (4)-(7)).
+#include <set>
+
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/gmr.hpp"
 #include "lfdtools/io/gmm_file.hpp"
@@ -35,6 +37,7 @@ int main(int argc, char** argv) {
     JsonStream stream(run.open(), run.messages(), run.json_options());
     std::optional<LabelledTable> table;
     std::vector<std::string> first_signals;
+    std::set<std::string> seen;
     while (auto document = stream.next()) {
       const GmmFile file = read_gmm(*document);
       const std::vector<std::string> signals(file.header.columns.begin() + 1, file.header.columns.end());
@@ -47,6 +50,9 @@ int main(int argc, char** argv) {
         table.emplace(run.output(), columns);
       } else if (signals != first_signals) {
         document->root().at("columns").fail("gmr.columns_differ", "the mixtures are over different signals");
+      }
+      if (!seen.insert(describe(file.header.labels)).second) {
+        document->root().fail("json.group_reappears", "a second mixture of the same target and teacher");
       }
       const Vector times = linspace(file.time_range[0], file.time_range[1], samples);
       const GmrPath path = gmr(file.gmm, times, {sd || covariance, derivatives});

@@ -42,9 +42,9 @@ int main(int argc, char** argv) {
     if (motions.columns() != references.columns()) {
       throw DataError("compare.columns_differ", "motions and references have different signals");
     }
-    LabelledTable table(run.output(),
-                        joined({"rmse", "end_error", "arrival_angle", "lateral", "jerk", "path_length", "duration"},
-                               prefixed("arrival_", motions.columns())));
+    LabelledTable table(run.output(), joined({"rmse", "end_error", "error_at_duration", "overshoot", "arrival_angle",
+                                              "lateral", "jerk", "path_length", "duration"},
+                                             prefixed("arrival_", motions.columns())));
     const auto D = static_cast<Eigen::Index>(motions.columns().size());
     for (std::size_t i = 0; i < motions.recordings(); ++i) {
       const Demonstration motion = motions.recording(i).demonstration;
@@ -59,8 +59,9 @@ int main(int argc, char** argv) {
       // Arrival and end look at the whole motion: it may settle after its duration.
       const Samples& whole = motion.trajectory.positions;
       const Arrival own = arrival(whole);
-      Samples row(1, 7 + D);
+      Samples row(1, 9 + D);
       row << rms_distance(scored, reference), (motion.trajectory.goal() - line.end).norm(),
+          (scored.row(samples - 1).transpose() - line.end).norm(), overshoot(whole, line),
           angle_between(own.direction, line.direction) * 180 / std::numbers::pi, lateral_deviation(whole, line),
           rms_jerk(scored, seconds), path_length(whole), motion.trajectory.duration(), own.direction.transpose();
       table.write(motion.labels, row);

@@ -11,7 +11,6 @@ using namespace lfd;
 
 int main(int argc, char** argv) {
   SkillOptions options;
-  KernelType kernel = KernelType::constant;  // stands for the sum
   MeanType mean = MeanType::zero;
   std::int64_t starts = options.starts;
   cli::Program program("mvgpr-train", "Learn a skill: movement primitives whose weights follow the target.");
@@ -24,12 +23,14 @@ int main(int argc, char** argv) {
                   {"full", SkillStructure::full},
                   {"joint", SkillStructure::joint}},
                  "what speaks for what: each axis for itself, all for each axis (Table 1), all for all");
-  program.choice("--kernel", kernel,
-                 {{"sum", KernelType::constant},
-                  {"se-ard", KernelType::se_ard},
-                  {"matern32", KernelType::matern32},
-                  {"matern52", KernelType::matern52}},
-                 "covariance function; sum: constant + linear + se-ard an input + se-ard over all");
+  program.choice("--kernel", options.kernel,
+                 {{"auto", SkillKernel::automatic},
+                  {"sum", SkillKernel::sum},
+                  {"se-ard", SkillKernel::se_ard},
+                  {"matern32", SkillKernel::matern32},
+                  {"matern52", SkillKernel::matern52}},
+                 "covariance function; sum (auto, but se-ard with --paper): constant + linear + se-ard an input + "
+                 "se-ard over all");
   program.choice("--mean", mean,
                  {{"zero", MeanType::zero}, {"constant", MeanType::constant}, {"linear", MeanType::linear}},
                  "explicit mean function");
@@ -41,7 +42,6 @@ int main(int argc, char** argv) {
   program.example("dmp-fit --paper reference.csv | mvgpr-train --paper --model full",
                   "Table 1 of the paper, literally");
   return program.run(argc, argv, [&](cli::Run& run) {
-    if (program.given("--kernel") && kernel != KernelType::constant) options.kernel = kernel;
     if (program.given("--mean")) options.mean = mean;
     options.starts = static_cast<int>(starts);
     options.seed = run.seed();
@@ -66,10 +66,10 @@ int main(int argc, char** argv) {
     }
     file.skill = train_skill(file.header.columns, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
-    for (std::size_t m = 0; m < file.skill.models.size(); ++m) {
-      run.figure(fmt::format("log_marginal_likelihood_{}", m + 1),
-                 file.skill.models[m].process.log_marginal_likelihood);
-    }
+    double evidence = 0;
+    for (const auto& model : file.skill.models) evidence += model.process.log_marginal_likelihood;
+    run.figure("rows", static_cast<double>(rows.size()));
+    run.figure("log_marginal_likelihood", evidence);
     write_skill(file, run.output());
   });
 }

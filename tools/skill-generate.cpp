@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     if (!request.goals.empty() && !request.goals_file.empty()) {
       throw UsageError("usage.exclusive", "--goal and --goals exclude each other");
     }
+    if (request.goals_file == "-") throw UsageError("usage.value", "--goals takes a file, not standard input");
   });
   program.example("skill-generate skill.json --goal 0.45,0.1,0.2", "one motion, to standard output");
   program.example("mvgpr-train dmp.json | skill-generate --goals holes.csv --dt 0.01 -o motions.csv",

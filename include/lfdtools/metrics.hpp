@@ -34,6 +34,9 @@ struct Arrival {
 /// line through line.end along line.direction.
 [[nodiscard]] double lateral_deviation(const Samples& path, const Arrival& line, double radius = 0.02);
 
+/// How far the path goes beyond line.end along line.direction, at the most [m]; 0 if it never does.
+[[nodiscard]] double overshoot(const Samples& path, const Arrival& line);
+
 /// Root mean square of the third time derivative [m/s^3]: third differences on n equally spaced times.
 /// @param duration  seconds that the path takes
 [[nodiscard]] double rms_jerk(const Samples& path, double duration);

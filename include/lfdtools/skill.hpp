@@ -28,13 +28,21 @@ enum class SkillStructure {
   joint       ///< one model for all axes, R^D -> R^(D N)
 };
 
+/// Covariance functions to choose from.
+enum class SkillKernel {
+  automatic,  ///< `sum`; with SkillOptions::paper `se_ard`
+  sum,        ///< constant + linear + se-ard an input + se-ard over all inputs
+  se_ard,     ///< one term over all inputs, as the others below
+  matern32,
+  matern52
+};
+
 struct SkillOptions {
   SkillStructure structure = SkillStructure::automatic;
   /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means
   /// `axis`.
   bool paper = false;
-  /// One term of this type in place of the default sum of terms.
-  std::optional<KernelType> kernel;
+  SkillKernel kernel = SkillKernel::automatic;
   std::optional<MeanType> mean;  ///< zero if empty
   OmegaRule omega = OmegaRule::integrated;
   int starts = 5;

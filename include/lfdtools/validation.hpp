@@ -46,12 +46,13 @@ struct ValidationOptions {
 struct ValidationScore {
   Labels labels;  ///< of the left-out target
   std::string method;
-  double rmse = 0;                   ///< to the target's mean path at equal phases [m]
-  double end_error = 0;              ///< distance from the goal at tau [m]
-  double dtw = 0;                    ///< mean distance along the cheapest DTW path to the mean path [m]
-  double outside = 0;                ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
-  std::optional<double> coverage95;  ///< share of samples of the mean path inside the 95 % band; empty: no band
-  std::optional<double> path95;      ///< 1 if the whole mean path is inside, else 0
+  double rmse = 0;       ///< to the target's mean path at equal phases [m]
+  double end_error = 0;  ///< distance from the goal at tau [m]
+  double dtw = 0;        ///< mean distance along the cheapest DTW path to the mean path [m]
+  double outside = 0;    ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
+  std::optional<double>
+      coverage95;  ///< share of samples of the mean path inside the 95 % band on every axis; empty: no band
+  std::optional<double> path95;  ///< 1 if the whole mean path is inside, else 0
 };
 
 struct Validation {

@@ -81,11 +81,10 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
     run.messages().warning("ik.condition", fmt::format("{}the condition number comes to {:.1f}", name, condition.value),
                            recording.place(condition.sample));
   }
-  const std::string suffix = labels.target ? "_" + *labels.target : "";
-  run.figure("largest_step" + suffix, worst(figures.step).value);
-  run.figure("largest_speed_ratio" + suffix, speed.value);
-  run.figure("tcp_speed" + suffix, tcp_speed.value);
-  run.figure("condition" + suffix, condition.value);
+  run.figure("largest_step", worst(figures.step).value);
+  run.figure("largest_speed_ratio", speed.value);
+  run.figure("tcp_speed", tcp_speed.value);
+  run.figure("condition", condition.value);
   return true;
 }
 

@@ -68,6 +68,9 @@ void write_weights(LabelledTable& table, const Goal& goal, const WeightPredictio
 
 void generate_from_skill(const SkillFile& file, const MotionRequest& request, Run& run) {
   const Skill& skill = file.skill;
+  if (!request.target.empty() && request.goals_file.empty()) {
+    throw UsageError("generate.target", "--target chooses among the goals of --goals, or the primitives of a file");
+  }
   const auto goals = goals_of(request, skill.columns, run);
   if (goals.empty()) throw UsageError("generate.no_goal", "a skill needs a goal: --goal X,Y,Z or --goals FILE");
   const SkillPredictor predictor(skill);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "lfdtools/io/number.hpp"
 
 namespace lfd::cli {
@@ -55,20 +58,35 @@ void Run::detail(std::string_view id, const std::string& text) {
 }
 
 void Run::figure(const std::string& name, double value) {
+  for (auto& [known, largest] : figures_) {
+    if (known == name) {
+      largest = std::max(largest, value);
+      return;
+    }
+  }
   figures_.emplace_back(name, value);
 }
 
 void Run::finish() {
-  if (output_) output_->finish();
-  if (options_.summary.empty()) return;
-  std::string header = "program,version,inputs,arguments";
-  std::string row = fmt::format("{},{},{},{}", provenance_.program, provenance_.version,
-                                quoted(joined(options_.inputs)), quoted(joined(provenance_.arguments)));
+  std::string header = "program,version,inputs,arguments,seed";
+  std::string row =
+      fmt::format("{},{},{},{},{}", provenance_.program, provenance_.version, quoted(joined(options_.inputs)),
+                  quoted(joined(provenance_.arguments)), provenance_.seed ? fmt::format("{}", *provenance_.seed) : "");
   for (const auto& [name, value] : figures_) {
     header += "," + name;
     row += "," + number_text(value);
   }
-  append_record(options_.summary, header + "\n", row + "\n");
+  if (!options_.summary.empty()) {
+    std::string first;
+    std::ifstream existing(options_.summary);
+    if (std::getline(existing, first) && first != header) {
+      throw Error(Fault::cannot_create, "summary.header_differs",
+                  "the summary has other columns, of another program: give each program a file of its own",
+                  {options_.summary, 1, 0, ""});
+    }
+  }
+  if (output_) output_->finish();
+  if (!options_.summary.empty()) append_record(options_.summary, header + "\n", row + "\n");
 }
 
 }  // namespace lfd::cli

@@ -186,7 +186,7 @@ SkillFile read_skill(const JsonDocument& document) {
   root.at("dmp").only({"scaling", "alpha_z", "beta_z", "alpha_x", "centers", "widths"});
   skill.dmp = read_dmp_settings(root.at("dmp"));
   skill.start = root.at("start").vector(D);
-  if (const auto spread = root.find("start_spread")) skill.start_spread = spread->number(0, 1e300);
+  skill.start_spread = root.at("start_spread").number(0, 1e300);
   const JsonView rows = root.at("rows");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows.at(i).only({"target", "demo", "teacher"});

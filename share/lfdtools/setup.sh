@@ -9,13 +9,13 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${LFD_BUILD_DIR:-$root/build/release}
 
-packages="g++ cmake make ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev liblbfgspp-dev libmd-dev"
+packages="g++ cmake make ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev libmd-dev"
 testing=OFF
 case "${1-}" in
   "") ;;
   --tests)
     testing=ON
-    packages="$packages catch2 librapidcheck-dev liborocos-kdl-dev python3-numpy python3-scipy"
+    packages="$packages catch2 liborocos-kdl-dev python3-numpy python3-scipy"
     ;;
   *) echo "setup.sh: unknown option $1" >&2; exit 64 ;;
 esac

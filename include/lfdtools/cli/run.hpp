@@ -57,7 +57,7 @@ class Run {
   void refuse(std::string_view gate, const std::string& text, const Place& place = {});
   /// A note that --verbose asks for.
   void detail(std::string_view id, const std::string& text);
-  /// A figure of this run for --summary.
+  /// A figure of this run for --summary: the largest value given under the name.
   void figure(const std::string& name, double value);
 
   /// Hands the output over and appends the row of --summary.

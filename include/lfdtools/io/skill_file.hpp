@@ -13,7 +13,8 @@ struct SkillFile {
   Skill skill;
 };
 
-/// @throws as JsonView; DataError [skill.shape] where parts disagree, [skill.outputs] unless every signal is the output of
+/// @throws as JsonView; DataError [skill.shape] where parts disagree, [skill.outputs] unless every signal is the output
+/// of
 ///         exactly one model; those of check(DmpSettings) and MvgpPredictor, each with its pointer
 [[nodiscard]] SkillFile read_skill(const JsonDocument& document);
 

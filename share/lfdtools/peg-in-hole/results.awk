@@ -1,6 +1,7 @@
 # One row an experiment, variant and new hole: how the motion ends, how far it is from the intention behind the
-# demonstrations, and what the arm makes of it. Lengths in millimetres, angles in degrees. Direction and lateral deviation
-# over the last 20 mm are against the line on which the intention arrives at that hole.
+# demonstrations, and what the arm makes of it. Lengths in millimetres, angles in degrees. end_error is
+# where the motion rests (at rest_s), error_at_tau where it is when its duration is over, overshoot how far it goes
+# beyond the hole along the direction of arrival. Direction and lateral deviation over the last 20 mm are against the line on which the intention arrives at that hole.
 function columns(line,   i, names, n) {
   n = split(line, names, ",")
   delete at
@@ -42,7 +43,7 @@ function joints(file,   line, cell, n, i, step, largest, previous, names) {
   found = "yes"
 }
 BEGIN {
-  print "experiment,variant,target,end_error_mm,rmse_mm,arrival_deg,lateral_mm,demos_lateral_mm,joint_path,largest_step_deg,largest_speed_deg_s"
+  print "experiment,variant,target,end_error_mm,error_at_tau_mm,overshoot_mm,rest_s,rmse_mm,arrival_deg,lateral_mm,demos_lateral_mm,joint_path,largest_step_deg,largest_speed_deg_s"
   split("A B", experiments, " ")
   split(variants, variant, " ")
   for (e = 1; e <= 2; ++e) {
@@ -58,8 +59,9 @@ BEGIN {
       for (i = 1; i <= n; ++i) {
         split(rows[i], cell, ",")
         joints(out "/" experiments[e] "/" variant[v] "/joints/" cell[1] ".csv")
-        printf "%s,%s,%s,%.4f,%.2f,%.2f,%.3f,%.3f,%s,%s,%s\n", experiments[e], variant[v], cell[1],
-          1e3 * cell[where["end_error"]], 1e3 * cell[where["rmse"]],
+        printf "%s,%s,%s,%.4f,%.3f,%.2f,%.2f,%.2f,%.2f,%.3f,%.3f,%s,%s,%s\n", experiments[e], variant[v], cell[1],
+          1e3 * cell[where["end_error"]], 1e3 * cell[where["error_at_duration"]], 1e3 * cell[where["overshoot"]],
+          cell[where["duration"]], 1e3 * cell[where["rmse"]],
           cell[where["arrival_angle"]],
           1e3 * cell[where["lateral"]], 1e3 * spread, found,
           found == "yes" ? sprintf("%.2f", largest_step * 57.29577951308232) : "-",

@@ -1,0 +1,20 @@
+# Tests of the programs as programs: cases (command, expected output and error), oracles (independent computations on the
+# files that they write), and the layers of the sources. Included by tests/CMakeLists.txt.
+set(LFD_PROGRAM_FOLDER ${CMAKE_BINARY_DIR}/tools)
+
+foreach(program IN ITEMS demo-synth demo-align gmm-fit gmr-regress dmp-fit mvgpr-train skill-generate skill-validate
+                         ur10-ik ur10-fk motion-compare)
+  add_test(NAME "cases: ${program}"
+           COMMAND ${CMAKE_COMMAND} -E env "PATH=${LFD_PROGRAM_FOLDER}:$ENV{PATH}"
+                   sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/run-cases.sh ${program})
+  set_tests_properties("cases: ${program}" PROPERTIES TIMEOUT 120)
+endforeach()
+
+foreach(oracle IN ITEMS dtw gmm gmr dmp skill arm)
+  add_test(NAME "oracle: ${oracle}"
+           COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/oracle/${oracle}_oracle.py ${LFD_PROGRAM_FOLDER}
+                   ${LFD_DATA_DIR} ${CMAKE_SOURCE_DIR}/share/lfdtools)
+  set_tests_properties("oracle: ${oracle}" PROPERTIES TIMEOUT 300)
+endforeach()
+
+add_test(NAME "layers" COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh ${CMAKE_SOURCE_DIR})
