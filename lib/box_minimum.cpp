@@ -1,137 +1,61 @@
 #include "lfdtools/box_minimum.hpp"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
+#include <LBFGSB.h>
+
 #include <cmath>
-#include <vector>
+#include <stdexcept>
 
 #include "lfdtools/error.hpp"
 
 namespace lfd {
 
-namespace {
-
-/// Variables that may move: not on a bound that the descent pushes against.
-std::vector<Eigen::Index> free_variables(const Vector& x, const Vector& g, const Vector& lower, const Vector& upper) {
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const bool held = (x(i) <= lower(i) && g(i) >= 0) || (x(i) >= upper(i) && g(i) <= 0);
-    if (!held) free.push_back(i);
-  }
-  return free;
-}
-
-/// -B_FF^-1 g_F, zero elsewhere. A variable on a bound that this direction would cross is taken out as well, and the
-/// rest solved again, for otherwise the projection may turn the direction uphill.
-Vector quasi_newton_direction(const Matrix& B, const Vector& x, const Vector& g, const Vector& lower,
-                              const Vector& upper, std::vector<Eigen::Index> free) {
-  Vector direction;
-  for (bool settled = false; !settled;) {
-    const Vector step = Matrix(B(free, free)).llt().solve(-g(free));
-    direction.setZero(x.size());
-    std::vector<Eigen::Index> inside;
-    for (std::size_t k = 0; k < free.size(); ++k) {
-      const Eigen::Index i = free[k];
-      const double d = step(static_cast<Eigen::Index>(k));
-      direction(i) = d;
-      if (!((x(i) <= lower(i) && d < 0) || (x(i) >= upper(i) && d > 0))) inside.push_back(i);
-    }
-    settled = inside.size() == free.size() || inside.empty();
-    free = inside;
-  }
-  return direction;
-}
-
-/// BFGS update of B with Powell's damping: y is drawn towards B s until the curvature along s is at least 0.2 s^T B s.
-void update(Matrix& B, const Vector& s, Vector y) {
-  const Vector Bs = B * s;
-  const double sBs = s.dot(Bs);
-  const double sy = s.dot(y);
-  if (!(sBs > 0)) return;
-  if (sy < 0.2 * sBs) {
-    const double theta = 0.8 * sBs / (sBs - sy);
-    y = theta * y + (1 - theta) * Bs;
-  }
-  B += y * y.transpose() / s.dot(y) - Bs * Bs.transpose() / sBs;
-}
-
-}  // namespace
-
 BoxMinimum minimize_in_box(const Objective& function, Vector x, const Vector& lower, const Vector& upper,
-                           const BoxMinimumOptions& options, const Matrix& hessian) {
-  const Eigen::Index size = x.size();
-  const auto clamp = [&](const Vector& v) -> Vector { return v.cwiseMax(lower).cwiseMin(upper); };
+                           const BoxMinimumOptions& options) {
   BoxMinimum best;
-  x = clamp(x);
-  Vector g = Vector::Zero(size);
-  double f = function(x, g);
-  best.evaluations = 1;
-  if (!std::isfinite(f) || !g.allFinite()) {
+  x = x.cwiseMax(lower).cwiseMin(upper);
+  Vector gradient = Vector::Zero(x.size());
+  best.x = x;
+  best.value = function(x, gradient);
+  if (!std::isfinite(best.value) || !gradient.allFinite()) {
     throw DataError("minimum.bad_start", "the function is not finite at the start of its minimisation");
   }
-
-  const auto gentle = [&]() -> Matrix {  // a first step of length one at most
-    return Matrix::Identity(size, size) * std::max(g.lpNorm<Eigen::Infinity>(), 1e-8);
+  // LBFGS++ would go on with NaN; a huge flat value ends its line search instead, by an exception. The best point seen is
+  // kept here, and from it the search goes on with shorter steps.
+  constexpr double outside = 1e100;
+  bool left_domain = false;
+  const auto objective = [&](const Vector& at, Vector& slope) {
+    const double value = function(at, slope);
+    ++best.evaluations;
+    if (!std::isfinite(value) || !slope.allFinite()) {
+      slope.setZero(at.size());
+      left_domain = true;
+      return outside;
+    }
+    if (value < best.value) {
+      best.value = value;
+      best.x = at;
+    }
+    return value;
   };
-  Matrix B = hessian.size() > 0 ? hessian : gentle();
-  bool fresh = hessian.size() == 0;  // nothing learned about the curvature yet
-
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const auto free = free_variables(x, g, lower, upper);
-    double slope = 0;
-    double excess = 0;  // over the tolerance
-    for (const auto i : free) {
-      slope = std::max(slope, std::abs(g(i)));
-      excess = std::max(excess, std::abs(g(i)) / std::max(1.0, std::sqrt(B(i, i))));
+  LBFGSpp::LBFGSBParam<double> parameters;
+  parameters.m = 10;
+  parameters.epsilon = options.gradient_tolerance;
+  parameters.epsilon_rel = 0;
+  parameters.max_iterations = options.max_iterations;
+  parameters.max_linesearch = 40;
+  for (double longest = 1e20; longest > 1e-6; longest = longest > 1 ? 0.1 : 0.1 * longest) {
+    parameters.max_step = longest;
+    left_domain = false;
+    try {
+      LBFGSpp::LBFGSBSolver<double> solver(parameters);
+      double value = best.value;
+      x = best.x;
+      best.converged = solver.minimize(objective, x, value, lower, upper) < options.max_iterations;
+    } catch (const std::runtime_error&) {
+    } catch (const std::logic_error&) {
     }
-    if (excess <= options.gradient_tolerance) {
-      best.converged = true;
-      break;
-    }
-    Vector direction = quasi_newton_direction(B, x, g, lower, upper, free);
-    const double length = direction.lpNorm<Eigen::Infinity>();
-    if (length > options.max_step) direction *= options.max_step / length;
-
-    bool moved = false;
-    double t = 1;
-    Vector s, g_new = Vector::Zero(size);
-    double f_new = f;
-    for (int trial = 0; trial < 25 && !moved; ++trial) {
-      s = clamp(x + t * direction) - x;
-      double descent = g.dot(s);
-      if (descent >= 0 && trial == 0) {  // the projection spoiled the direction: the projected gradient always descends
-        direction = -g * (std::min(1.0, options.max_step / slope));
-        s = clamp(x + direction) - x;
-        descent = g.dot(s);
-      }
-      if (descent >= 0) break;
-      f_new = function(x + s, g_new);
-      ++best.evaluations;
-      const bool finite = std::isfinite(f_new) && g_new.allFinite();
-      moved = finite && f_new < f && f_new <= f + 1e-4 * descent;
-      if (!moved) {
-        // Minimum of the parabola through f, its slope and f_new, kept within a tenth to a half of the step.
-        const double curvature = f_new - f - descent;
-        t *= finite && curvature > 0 ? std::clamp(-0.5 * descent / curvature, 0.1, 0.5) : 0.25;
-      }
-    }
-    if (!moved) {
-      if (fresh) break;  // even the plain gradient finds nothing lower: the limit of the arithmetic
-      B = gentle();
-      fresh = true;
-      continue;
-    }
-    const Vector y = g_new - g;
-    if (fresh && s.dot(y) > 0) B = Matrix::Identity(size, size) * (y.squaredNorm() / s.dot(y));
-    fresh = false;
-    update(B, s, y);
-    x = clamp(x + s);
-    f = f_new;
-    g = g_new;
+    if (!left_domain) break;
   }
-  best.x = x;
-  best.value = f;
-  best.hessian = B;
   return best;
 }
 

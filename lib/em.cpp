@@ -51,30 +51,8 @@ struct EmScratch {
   double total[em_block];
 };
 
-#define LFD_WIDTH 2
-namespace width2 {
-#include "em_kernel.inc"
-}  // namespace width2
-#undef LFD_WIDTH
-
-#ifdef LFD_X86_WIDTHS
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#define LFD_WIDTH 4
-namespace width4 {
-#include "em_kernel.inc"
-}  // namespace width4
-#undef LFD_WIDTH
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f")
-#define LFD_WIDTH 8
-namespace width8 {
-#include "em_kernel.inc"
-}  // namespace width8
-#undef LFD_WIDTH
-#pragma GCC pop_options
-#endif
+#define LFD_KERNEL "em_kernel.inc"
+#include "widths.inc"
 
 using Run = double (*)(const EmModel&, const double*, std::ptrdiff_t, std::ptrdiff_t, EmScratch&);
 

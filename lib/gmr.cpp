@@ -35,30 +35,8 @@ struct GmrOutput {
   double* derivative = nullptr;  // T x D
 };
 
-#define LFD_WIDTH 2
-namespace width2 {
-#include "gmr_kernel.inc"
-}  // namespace width2
-#undef LFD_WIDTH
-
-#ifdef LFD_X86_WIDTHS
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#define LFD_WIDTH 4
-namespace width4 {
-#include "gmr_kernel.inc"
-}  // namespace width4
-#undef LFD_WIDTH
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f")
-#define LFD_WIDTH 8
-namespace width8 {
-#include "gmr_kernel.inc"
-}  // namespace width8
-#undef LFD_WIDTH
-#pragma GCC pop_options
-#endif
+#define LFD_KERNEL "gmr_kernel.inc"
+#include "widths.inc"
 
 void regress(int width, const GmrModel& model, const Vector& times, const GmrOutput& out) {
 #ifdef LFD_X86_WIDTHS

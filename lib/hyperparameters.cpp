@@ -97,12 +97,11 @@ struct Problem {
     return value;
   }
 
-  [[nodiscard]] BoxMinimum minimize(Evidence& evidence, const Vector& start, const BoxMinimumOptions& stop,
-                                    const Matrix& hessian = {}) const {
+  [[nodiscard]] BoxMinimum minimize(Evidence& evidence, const Vector& start, const BoxMinimumOptions& stop) const {
     const Objective objective = [&](const Vector& theta, Vector& gradient) {
       return (*this)(evidence, theta, &gradient);
     };
-    return minimize_in_box(objective, start, lower, upper, stop, hessian);
+    return minimize_in_box(objective, start, lower, upper, stop);
   }
 
   /// Start number s: from the data for 0, else the best of a number of draws of its own.
@@ -156,29 +155,24 @@ Vector hyperparameters_of_maximum_evidence(const Matrix& X, const Matrix& Y, con
   const auto all = hyperparameters(kernel, X, options);
   const Problem problem(all);
   // An evaluation costs n^3, so with many rows the starts compete on a random part of them, and what wins there is
-  // refined on larger and larger parts: the Hessian of the evidence grows about in proportion to the rows, so the last
-  // step, on all rows, starts with a good one and takes few evaluations.
+  // refined on larger and larger parts: the last step, on all rows, starts near its end and takes few evaluations.
   // A free Omega or a linear mean might be undetermined on a part of the rows.
   const bool parts = settings.omega == OmegaRule::integrated && settings.mean != MeanType::linear;
   std::vector<Evidence> stages;
-  std::vector<double> sizes;
   for (Eigen::Index m = first_part; parts && 3 * m < 2 * X.rows(); m *= 4) {
     const auto rows = random_subset(X.rows(), m, options.seed);
     EvidenceSettings part = settings;
     if (part.row_noise.size() > 0) part.row_noise = settings.row_noise(rows);
     stages.emplace_back(X(rows, Eigen::all), Y(rows, Eigen::all), kernel, part);
-    sizes.push_back(static_cast<double>(m));
   }
   stages.emplace_back(X, Y, kernel, settings);
-  sizes.push_back(static_cast<double>(X.rows()));
 
   const auto candidates = problem.compete(stages.front(), options);
   const auto refine = [&](BoxMinimum found) {
     for (std::size_t k = 1; k < stages.size(); ++k) {
-      found.hessian *= sizes[k] / sizes[k - 1];
-      if (k + 1 < stages.size()) found = problem.minimize(stages[k], found.x, competition, found.hessian);
+      if (k + 1 < stages.size()) found = problem.minimize(stages[k], found.x, competition);
     }
-    return problem.minimize(stages.back(), found.x, {}, found.hessian);
+    return problem.minimize(stages.back(), found.x, {});
   };
   const BoxMinimum& first = candidates.front();
   BoxMinimum best = refine(first);

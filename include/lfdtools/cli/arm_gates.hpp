@@ -1,4 +1,4 @@
-// What the arm is never asked to do unless the user insists (robustness.md, Robot gates). No safety function.
+// What the arm is never asked to do unless the user insists. No safety function.
 #pragma once
 
 #include "lfdtools/cli/program.hpp"

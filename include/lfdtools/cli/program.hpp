@@ -1,4 +1,4 @@
-// One command-line program: options into a struct, a body, an exit status (interfaces.md, Common behaviour).
+// One command-line program: options into a struct, a body, an exit status.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,7 @@ _lfdtools_options() {
   local common="-o --output -q --quiet -v --verbose --errors --summary -h --help -V --version --strict"
   local table="--columns --renumber" gates="--no-gate --no-gates"
   case $1 in
-    demo-synth) echo "$common --seed --write --target --repetitions" ;;
+    demo-synth) echo "$common --seed --write --no-obstacle --target --repetitions" ;;
     demo-align) echo "$common $table -j --jobs --reference --clock --window --trim --samples --leave-out-outliers --costs" ;;
     gmm-fit) echo "$common $table -j --jobs --seed -k --components --bic-n --restarts" ;;
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
@@ -32,7 +32,7 @@ _lfdtools_words() {
     dmp-fit:--scaling) echo "none goal" ;;
     dmp-fit:--fit) echo "trajectory ls lwr" ;;
     mvgpr-train:--model) echo "auto axis full joint" ;;
-    mvgpr-train:--kernel) echo "sum se-ard matern32 matern52" ;;
+    mvgpr-train:--kernel) echo "auto sum se-ard matern32 matern52" ;;
     mvgpr-train:--mean) echo "zero constant linear" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
     skill-validate:--methods) echo "skill paper paper-full line nearest mean affine affine-means" ;;

@@ -1,4 +1,4 @@
-# The paper's claims, each with the figure measured here and whether it holds (method.md, section 9, in the manual lfdtools(7)).
+# The paper's claims, each with the figure measured here and whether it holds.
 function row(claim, figure, limit, holds) {
   gsub(/,/, ";", figure); gsub(/,/, ";", limit)
   printf "%s,%s,%s,%s\n", claim, figure, limit, holds ? "holds" : "does not hold"
