@@ -62,9 +62,8 @@ struct Approach {
 /// middle to the hand without berth (across the axis), rho its part across the way w, and h = softness:
 ///   B(g) = (sum over s of x(s)^32)^(1/32),  65 phases,  x = q softplus(R exp(-rho^2 / 2 R^2) - r . w) / b
 ///   softplus(z) = (z + sqrt(z^2 + h^2)) / 2,  q = 1 where rho <= R, else exp(-2 (rho / R - 1)^2)
-/// Smooth in g. An obstacle right beside an end, where b is small, asks for a huge berth, and may get less than it needs:
-/// 65 phases are then too coarse.
-/// How much clearance the whole arm needs is for the experiment to say.
+/// Smooth in g. An obstacle right beside an end, where b is small, asks for a huge berth, and may get less than it
+/// needs: 65 phases are then too coarse. How much clearance the whole arm needs is for the experiment to say.
 struct Obstacle {
   Vector center;             ///< D [m]
   Vector axis;               ///< D, direction of the cylinder; empty: a sphere
