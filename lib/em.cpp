@@ -100,7 +100,7 @@ void add_lanes(const std::vector<double>& lanes, std::vector<double>& sums) {
 
 /// New parameters from the sums in whitened coordinates about the old mean: x = mu + L z.
 void maximise(const std::vector<double>& sums, const std::vector<Matrix>& factors, const Vector& regularization,
-              CovarianceType type, double N, EmStep& step) {
+              CovarianceType type, const Vector& varies, double N, EmStep& step) {
   const Index D = step.gmm.dimensions();
   Matrix shared = Matrix::Zero(D, D);
   Matrix C(D, D);
@@ -126,9 +126,8 @@ void maximise(const std::vector<double>& sums, const std::vector<Matrix>& factor
       shared += step.gmm.priors[k] * S;
       continue;
     }
-    if (type == CovarianceType::diagonal) S = Matrix(S.diagonal().asDiagonal());
     S.diagonal() += regularization;
-    Sigma = S;
+    Sigma = constrained(S, type, varies);
   }
   if (type != CovarianceType::tied) return;
   shared.diagonal() += regularization;
@@ -136,6 +135,27 @@ void maximise(const std::vector<double>& sums, const std::vector<Matrix>& factor
 }
 
 }  // namespace
+
+Vector varying_columns(const Matrix& samples) {
+  Vector varies(samples.cols());
+  for (Index j = 0; j < samples.cols(); ++j) {
+    const double* x = samples.data() + j * samples.rows();
+    const bool varied = std::any_of(x, x + samples.rows(), [x](double value) { return value != *x; });
+    varies[j] = varied ? 1.0 : 0.0;
+  }
+  return varies;
+}
+
+Matrix constrained(const Matrix& Sigma, CovarianceType type, const Vector& varies) {
+  if (type == CovarianceType::full || type == CovarianceType::tied) return Sigma;
+  Vector variances = Sigma.diagonal();
+  const double varying = varies.sum();
+  if (type == CovarianceType::spherical && varying > 0.0) {
+    const double shared = variances.dot(varies) / varying;
+    variances = (varies.array() > 0.0).select(shared, variances);
+  }
+  return variances.asDiagonal();
+}
 
 EmStep em_step(const Gmm& gmm, const Matrix& samples, const Vector& regularization, CovarianceType type, unsigned jobs,
                int vector_width) {
@@ -170,7 +190,8 @@ EmStep em_step(const Gmm& gmm, const Matrix& samples, const Vector& regularizati
     step.objective += objectives[c];
     for (std::size_t q = 0; q < sums_size; ++q) sums[q] += partial[c][q];
   }
-  maximise(sums, factors, regularization, type, static_cast<double>(N), step);
+  const Vector varies = type == CovarianceType::spherical ? varying_columns(samples) : Vector();
+  maximise(sums, factors, regularization, type, varies, static_cast<double>(N), step);
   return step;
 }
 

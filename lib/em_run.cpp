@@ -23,7 +23,7 @@ Health health(const EmStep& step, Index k, const Vector& varies, const Vector& r
   }
   if (step.gmm.components() == 1) return Health::sound;
   const auto D = static_cast<double>(Sigma.rows());
-  const double needed = type == CovarianceType::full ? D + 1.0 : type == CovarianceType::diagonal ? 2.0 : 1.0;
+  const double needed = type == CovarianceType::full ? D + 1.0 : type == CovarianceType::tied ? 1.0 : 2.0;
   if (step.counts[k] < needed) return Health::thin;
   for (Index j = 0; j < Sigma.rows(); ++j) {
     if (varies[j] != 0.0 && Sigma(j, j) <= 2.0 * regularization[j]) return Health::thin;

@@ -120,27 +120,16 @@ Samples responsibilities(const Gmm& gmm, const Samples& samples) {
   return result;
 }
 
-Index free_parameters(Index components, Index dimensions, CovarianceType type) {
-  const Index K = components;
-  const Index D = dimensions;
-  const Index location = (K - 1) + K * D;
-  switch (type) {
-    case CovarianceType::tied:
-      return location + D * (D + 1) / 2;
-    case CovarianceType::diagonal:
-      return location + K * D;
-    case CovarianceType::full:
-      break;
-  }
-  return location + K * D * (D + 1) / 2;
-}
-
-double bic(double log_likelihood, Index q, double n) {
-  return -2.0 * log_likelihood + static_cast<double>(q) * std::log(n);
-}
-
-double aic(double log_likelihood, Index q) {
-  return -2.0 * log_likelihood + 2.0 * static_cast<double>(q);
+double responsibility_entropy(const Gmm& gmm, const Samples& samples) {
+  double result = 0.0;
+  for_log_weights(gmm, samples, [&](Index, const Matrix& weights) {
+    const Vector total = row_log_sum_exp(weights);
+    if (!total.allFinite()) throw DataError("gmm.out_of_range", "a sample is too far from the mixture");
+    // ln r, kept finite where r underflows to 0 or the prior is 0: there r ln r is 0
+    const Matrix log_r = (weights.colwise() - total).cwiseMax(-1e3);
+    result -= log_r.array().exp().cwiseProduct(log_r.array()).sum();
+  });
+  return std::max(result, 0.0);  // rounding can put ln r a little over 0
 }
 
 }  // namespace lfd

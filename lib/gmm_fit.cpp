@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "lfdtools/em.hpp"
 #include "lfdtools/em_run.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/gmm.hpp"
@@ -95,6 +96,7 @@ Gmm start(const Standardised& data, Index K, CovarianceType type, Random& random
     e = (data.samples.row(i) - gmm.means.row(k)).transpose();
     gmm.covariances[static_cast<std::size_t>(k)].noalias() += e * e.transpose();
   }
+  const Vector varies = varying_columns(data.samples);
   Matrix within = Matrix::Zero(D, D);
   for (const Matrix& S : gmm.covariances) within += S / static_cast<double>(N);
   for (Index k = 0; k < K; ++k) {
@@ -102,9 +104,9 @@ Gmm start(const Standardised& data, Index K, CovarianceType type, Random& random
     // Too few samples for a covariance of their own, or a shared one: that within all clusters.
     const bool own = type != CovarianceType::tied && gmm.priors[k] >= static_cast<double>(2 * (D + 1));
     S = own ? Matrix(S / gmm.priors[k]) : within;
-    if (type == CovarianceType::diagonal) S = Matrix(S.diagonal().asDiagonal());
     // The regularisation, or what keeps a start positive definite where none is wanted.
     S.diagonal() += data.regularization.cwiseMax(1e-6);
+    S = constrained(S, type, varies);
   }
   gmm.priors /= static_cast<double>(N);
   return gmm;
@@ -143,6 +145,15 @@ EmRun best_run(const Standardised& data, const EmOptions& options, unsigned jobs
   return best;
 }
 
+/// Fills in the criteria. @return the one that chooses
+double judge(GmmFit& fit, const CriterionOptions& options) {
+  const Criteria all = criteria(fit.log_likelihood, fit.entropy, fit.parameters, fit.samples, options);
+  fit.bic = all.bic;
+  fit.aic = all.aic;
+  fit.icl = all.icl;
+  return all.of(options.criterion);
+}
+
 GmmFit fit(const Samples& samples, const Standardised& data, const EmOptions& options, unsigned jobs) {
   const Index N = samples.rows();
   GmmFit result;
@@ -160,9 +171,9 @@ GmmFit fit(const Samples& samples, const Standardised& data, const EmOptions& op
   }
   result.samples = N;
   result.log_likelihood = log_likelihood(result.gmm, samples);
-  const Index q = free_parameters(result.gmm.components(), samples.cols(), options.covariance_type);
-  result.bic = bic(result.log_likelihood, q, static_cast<double>(N));
-  result.aic = aic(result.log_likelihood, q);
+  result.entropy = responsibility_entropy(result.gmm, samples);
+  result.parameters = free_parameters(result.gmm.components(), samples.cols(), options.covariance_type);
+  judge(result, {});
   result.iterations = run.iterations;
   result.converged = run.converged;
   result.regularization = data.regularization.cwiseProduct(data.scale.cwiseAbs2());
@@ -194,8 +205,9 @@ GmmFit fit_gmm(const Samples& samples, const EmOptions& options) {
   return fit(samples, standardise(samples, options.regularization), options, options.jobs);
 }
 
-ComponentSelection select_components(const Samples& samples, Index k_from, Index k_to, double bic_n,
-                                     const EmOptions& options) {
+ComponentSelection select_components(const Samples& samples, Index k_from, Index k_to,
+                                     const CriterionOptions& criterion, const EmOptions& options) {
+  const double bic_n = criterion.bic_n;
   if (k_from < 1 || k_to < k_from || bic_n < 0.0 || !std::isfinite(bic_n) || (bic_n > 0.0 && bic_n <= 1.0)) {
     throw UsageError("gmm.option",
                      "the numbers of components must rise from at least 1, and the n of the BIC exceed 1");
@@ -213,12 +225,16 @@ ComponentSelection select_components(const Samples& samples, Index k_from, Index
   ComponentSelection result;
   result.bic_n = bic_n > 0.0 ? bic_n : static_cast<double>(samples.rows());
   std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     GmmFit& one = fits[i];
-    const Index k = one.gmm.components();
-    one.bic = bic(one.log_likelihood, free_parameters(k, samples.cols(), options.covariance_type), result.bic_n);
-    result.table.push_back({k, one.log_likelihood, one.bic, one.aic});
-    if (one.bic < fits[best].bic) best = i;
+    const double value = judge(one, criterion);
+    result.table.push_back(
+        {one.gmm.components(), one.log_likelihood, one.bic, one.aic, one.icl, one.parameters, one.entropy});
+    if (value < least) {
+      least = value;
+      best = i;
+    }
   }
   result.fit = std::move(fits[best]);
   const Index k = result.fit.gmm.components();

@@ -337,7 +337,7 @@ ReferencePath reference_path(const std::vector<Trajectory>& aligned, const Valid
   }
   EmOptions em;
   em.seed = options.seed;
-  const auto selection = select_components(pooled, options.k_from, options.k_to, 0, em);
+  const auto selection = select_components(pooled, options.k_from, options.k_to, {}, em);
   const Vector times = linspace(pooled.col(0).minCoeff(), pooled.col(0).maxCoeff(), reference_samples);
   GmrOptions mean_alone;
   mean_alone.covariance = false;

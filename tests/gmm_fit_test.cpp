@@ -63,9 +63,9 @@ TEST_CASE("the order of the samples does not matter, nor does the number of thre
   CHECK(same_bytes(fit.gmm, fit_gmm(reversed, options).gmm));
   options.jobs = 3;
   CHECK(same_bytes(fit.gmm, fit_gmm(x, options).gmm));
-  const ComponentSelection three = select_components(x, 1, 5, 0, options);
+  const ComponentSelection three = select_components(x, 1, 5, {}, options);
   options.jobs = 1;
-  const ComponentSelection one = select_components(x, 1, 5, 0, options);
+  const ComponentSelection one = select_components(x, 1, 5, {}, options);
   CHECK(same_bytes(one.fit.gmm, three.fit.gmm));
   for (std::size_t i = 0; i < 5; ++i) CHECK(one.table[i].log_likelihood == three.table[i].log_likelihood);
   options.seed = 2;
@@ -166,7 +166,7 @@ TEST_CASE("the table holds every K, the least BIC wins, and an edge is flagged")
   Samples x(600, 2);
   for (Index i = 0; i < 600; ++i) x.row(i) << 4.0 * static_cast<double>(i % 3) + random.normal(), random.normal();
   EmOptions options;
-  const ComponentSelection chosen = select_components(x, 1, 6, 0, options);
+  const ComponentSelection chosen = select_components(x, 1, 6, {}, options);
   CHECK(chosen.fit.gmm.components() == 3);
   CHECK_FALSE(chosen.at_edge);
   CHECK(chosen.bic_n == 600.0);
@@ -180,10 +180,10 @@ TEST_CASE("the table holds every K, the least BIC wins, and an edge is flagged")
   CHECK(chosen.table[2].log_likelihood == chosen.fit.log_likelihood);
   options.components = 3;
   CHECK(same_bytes(chosen.fit.gmm, fit_gmm(x, options).gmm));
-  CHECK(select_components(x, 1, 3, 0, options).at_edge);
-  CHECK(select_components(x, 3, 5, 0, options).at_edge);
-  CHECK_FALSE(select_components(x, 3, 3, 0, options).at_edge);
-  const ComponentSelection fewer = select_components(x, 1, 3, 50, options);
+  CHECK(select_components(x, 1, 3, {}, options).at_edge);
+  CHECK(select_components(x, 3, 5, {}, options).at_edge);
+  CHECK_FALSE(select_components(x, 3, 3, {}, options).at_edge);
+  const ComponentSelection fewer = select_components(x, 1, 3, {.bic_n = 50}, options);
   CHECK(fewer.fit.bic == Approx(-2 * fewer.fit.log_likelihood + 17 * std::log(50.0)).epsilon(1e-14));
 }
 
@@ -200,9 +200,9 @@ TEST_CASE("what cannot be fitted is named") {
   CHECK(id_of(bad, options) == "gmm.not_finite");
   bad(3, 1) = 1e300;
   CHECK(id_of(bad, options) == "gmm.out_of_range");
-  CHECK_THROWS_AS(select_components(x, 3, 2, 0, options), UsageError);
-  CHECK_THROWS_AS(select_components(x, 1, 2, 0.5, options), UsageError);
-  CHECK_THROWS_AS(select_components(x, 1, 101, 0, options), DataError);
+  CHECK_THROWS_AS(select_components(x, 3, 2, {}, options), UsageError);
+  CHECK_THROWS_AS(select_components(x, 1, 2, {.bic_n = 0.5}, options), UsageError);
+  CHECK_THROWS_AS(select_components(x, 1, 101, {}, options), DataError);
   for (const int wrong : {0, 1, 2, 3, 4}) {
     EmOptions broken = options;
     if (wrong == 0) broken.components = 0;

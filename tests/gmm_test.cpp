@@ -118,7 +118,7 @@ TEST_CASE("with the defaults the irises come out as well as mclust's own stop") 
   const GmmFit fit = fit_gmm(iris(), options);
   CHECK(fit.log_likelihood > -180.185838744 - 150 * options.tolerance);
   CHECK(fit.log_likelihood < -180.1854);
-  const ComponentSelection two = select_components(iris(), 1, 6, 0, options);
+  const ComponentSelection two = select_components(iris(), 1, 6, {}, options);
   CHECK(two.fit.gmm.components() == 2);  // mclust: BIC 574.018 at K = 2, 580.839 at 3
   CHECK(two.fit.bic == Approx(574.017832).margin(1e-3));
 }

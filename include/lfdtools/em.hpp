@@ -5,6 +5,16 @@
 
 namespace lfd {
 
+/// 1 for a column of the samples (N x D) that takes two values or more, 0 for a constant one.
+[[nodiscard]] Vector varying_columns(const Matrix& samples);
+
+/// The covariance of a type of its own (not tied) that maximises Q (see em_step) for a component.
+/// full: S + R. diagonal: its diagonal. spherical: sigma^2 I, where Q, -D ln sigma^2 - tr(S + R) / sigma^2 up to
+/// constants, is greatest at sigma^2 = tr(S + R) / D; a constant column takes no part and keeps its own S + R, so that
+/// it neither narrows the others nor is widened by them.
+/// @param Sigma   S + R, D x D   @param varies  varying_columns
+[[nodiscard]] Matrix constrained(const Matrix& Sigma, CovarianceType type, const Vector& varies);
+
 struct EmStep {
   Gmm gmm;               ///< after the M step
   double objective = 0;  ///< of the mixture that went in [nats]: see GmmFit::history

@@ -26,7 +26,8 @@ struct EmRun {
 
 /// Goes on until an iteration gains less than options.tolerance a sample, or until `until` iterations have been done in
 /// all. A component is re-seeded at a badly explained sample when it holds too few samples for a covariance (D+1, or 2
-/// on a diagonal), is hardly wider than the regularisation in a column that varies, or has a singular covariance.
+/// where it is diagonal or spherical), is hardly wider than the regularisation in a column that varies, or has a
+/// singular covariance.
 /// @param samples         N x D, by column, scaled so that a column that varies has a variance of 1
 /// @param regularization  D, as em_step
 void advance(const Matrix& samples, const Vector& regularization, const EmOptions& options, int until, unsigned jobs,

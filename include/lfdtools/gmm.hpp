@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lfdtools/criteria.hpp"
 #include "lfdtools/linalg.hpp"
 
 namespace lfd {
@@ -35,22 +36,9 @@ void check(const Gmm& gmm);
 /// p(k | x_i), N x K; the rows sum to 1. Errors as log_densities.
 [[nodiscard]] Samples responsibilities(const Gmm& gmm, const Samples& samples);
 
-/// Which covariances a fit may choose.
-enum class CovarianceType {
-  full,      ///< each component its own (mclust: VVV)
-  tied,      ///< one shared by all (mclust: EEE)
-  diagonal,  ///< each its own, without correlations (mclust: VVI)
-};
-
-/// Number of free parameters q: (K-1) + K D + K D (D+1) / 2 for full covariances.
-[[nodiscard]] Eigen::Index free_parameters(Eigen::Index components, Eigen::Index dimensions,
-                                           CovarianceType type = CovarianceType::full);
-
-/// -2 logL + q ln n. Smaller is better.
-[[nodiscard]] double bic(double log_likelihood, Eigen::Index q, double n);
-
-/// -2 logL + 2 q. Smaller is better.
-[[nodiscard]] double aic(double log_likelihood, Eigen::Index q);
+/// Entropy of the responsibilities, -sum_i sum_k p(k | x_i) ln p(k | x_i) [nats], between 0 (every sample belongs to
+/// one component) and N ln K. Errors as log_densities; [gmm.out_of_range] for a sample too far from the mixture.
+[[nodiscard]] double responsibility_entropy(const Gmm& gmm, const Samples& samples);
 
 struct EmOptions {
   Eigen::Index components = 4;                            ///< K
@@ -63,9 +51,9 @@ struct EmOptions {
   unsigned jobs = 1;             ///< threads; 0: one a processor; the result does not depend on it
 };
 
-/// A component that held fewer than D+1 samples (on a diagonal 2), had shrunk to the regularisation in a column that
-/// varies, or was singular: it was started again at a sample that the mixture explained badly. At most K times in a
-/// run; a start that ends without such components is preferred to one that has them, whatever the likelihood.
+/// A component that held fewer than D+1 samples (diagonal, spherical: 2), had shrunk to the regularisation in a column
+/// that varies, or was singular: it was started again at a sample that the mixture explained badly. At most K times in
+/// a run; a start that ends without such components is preferred to one that has them, whatever the likelihood.
 struct Collapse {
   int iteration = 0;           ///< EM iteration, from 1, after which it was re-seeded
   Eigen::Index component = 0;  ///< from 0
@@ -74,15 +62,18 @@ struct Collapse {
 
 /// A fitted mixture. The status stands beside the model: EM that has not converged is no error.
 struct GmmFit {
-  Gmm gmm;                    ///< in the units of the samples
-  double log_likelihood = 0;  ///< of `gmm`, sum over the samples [nats]
-  double bic = 0;             ///< -2 logL + q ln n
-  double aic = 0;             ///< -2 logL + 2 q
-  Eigen::Index samples = 0;   ///< N
-  int iterations = 0;         ///< EM iterations of the winner
-  bool converged = false;     ///< the last gain was under the tolerance
-  int restart = 0;            ///< the start that won, from 0
-  Vector regularization;      ///< D, variance added to each diagonal in every M step, units of the samples squared
+  Gmm gmm;                      ///< in the units of the samples
+  double log_likelihood = 0;    ///< of `gmm`, sum over the samples [nats]
+  double entropy = 0;           ///< of the responsibilities [nats]
+  Eigen::Index parameters = 0;  ///< q
+  double bic = 0;               ///< of n = N, or as select_components was asked; so aic and icl
+  double aic = 0;
+  double icl = 0;
+  Eigen::Index samples = 0;  ///< N
+  int iterations = 0;        ///< EM iterations of the winner
+  bool converged = false;    ///< the last gain was under the tolerance
+  int restart = 0;           ///< the start that won, from 0
+  Vector regularization;     ///< D, variance added to each diagonal in every M step, units of the samples squared
   /// Objective before each iteration and at the end (iterations + 1 values): the log-likelihood with each component's
   /// density multiplied by exp(-1/2 tr(Sigma_k^-1 R)), R the diagonal of `regularization`. Adding R in the M step
   /// maximises exactly this, so it never falls, but at a re-seeding (`collapses`). Without R it is the log-likelihood.
@@ -104,22 +95,25 @@ struct GmmFit {
 struct Selection {
   Eigen::Index k = 0;
   double log_likelihood = 0;
-  double bic = 0;  ///< with the n given to select_components
+  double bic = 0;  ///< as select_components was asked; so aic and icl
   double aic = 0;
+  double icl = 0;
+  Eigen::Index parameters = 0;  ///< q
+  double entropy = 0;           ///< of the responsibilities [nats]
 };
 
 struct ComponentSelection {
-  GmmFit fit;                    ///< of the K with the least BIC; its `bic` is the table's
+  GmmFit fit;                    ///< of the K that the criterion chooses; its bic, aic, icl are the table's
   std::vector<Selection> table;  ///< k_from .. k_to
-  double bic_n = 0;              ///< the n used in the BIC
+  double bic_n = 0;              ///< the n used in BIC and ICL
   bool at_edge = false;          ///< K is an end of the range (other than 1), so a wider range could choose another
 };
 
-/// Fits every K in [k_from, k_to] and chooses by BIC.
-/// @param bic_n  effective number of samples in the BIC, above 1; 0: N. Samples of a smooth motion are far from
-///               independent, so that N keeps asking for more components as the sampling rate grows
+/// Fits every K in [k_from, k_to] and takes the K of the least criterion. Samples of a smooth motion are far from
+/// independent, so that a likelihood of all of them keeps asking for more components as the sampling rate grows:
+/// Likelihood::effective with a bic_n of one's own does not.
 /// @throws as fit_gmm; UsageError [gmm.option] also for an empty range or a bad bic_n
 [[nodiscard]] ComponentSelection select_components(const Samples& samples, Eigen::Index k_from, Eigen::Index k_to,
-                                                   double bic_n, const EmOptions& options);
+                                                   const CriterionOptions& criterion, const EmOptions& options);
 
 }  // namespace lfd

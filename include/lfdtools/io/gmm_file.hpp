@@ -13,13 +13,18 @@ namespace lfd {
 struct GmmFile {
   FileHeader header;  ///< columns: t, then D signals
   CovarianceType covariance_type = CovarianceType::full;
-  Gmm gmm;                    ///< over D + 1 dimensions
-  Vector regularization;      ///< D + 1, variance added to each diagonal in every M step
-  double log_likelihood = 0;  ///< sum over the samples [nats]
-  double bic = 0;             ///< with bic_n
+  Gmm gmm;                                      ///< over D + 1 dimensions
+  Vector regularization;                        ///< D + 1, variance added to each diagonal in every M step
+  double log_likelihood = 0;                    ///< sum over the samples [nats]
+  Criterion criterion = Criterion::bic;         ///< what chose K
+  Likelihood likelihood = Likelihood::samples;  ///< what bic, aic and icl take the samples for
+  double bic = 0;                               ///< with bic_n
   double aic = 0;
+  double icl = 0;               ///< with bic_n
+  Eigen::Index parameters = 0;  ///< q
+  double entropy = 0;           ///< of the responsibilities [nats]
   Eigen::Index samples = 0;     ///< N
-  double bic_n = 0;             ///< the n used in the BIC
+  double bic_n = 0;             ///< the n used in BIC and ICL
   Eigen::Index iterations = 0;  ///< of EM
   bool converged = false;
   std::array<double, 2> time_range{};  ///< first and last time of the data [s]
@@ -28,11 +33,11 @@ struct GmmFile {
   std::vector<Selection> selection;    ///< all K tried
 };
 
-/// At most 10 000 components and 1000 columns. What regression does not need (regularization, log_likelihood, bic, aic,
-/// samples, bic_n, iterations, converged, selection) may be missing.
+/// At most 10 000 components and 1000 columns. What regression does not need (covariance_type, regularization, and all
+/// about the likelihood and the choice of K) may be missing.
 /// @throws as JsonView, with the pointer; [gmm.priors] (negative, or a sum off 1 by more than 1e-9),
 /// [gmm.not_symmetric],
-///         [gmm.not_positive_definite]
+///         [gmm.not_positive_definite], [gmm.covariance_type] for covariances that are none of the type
 [[nodiscard]] GmmFile read_gmm(const JsonDocument& document);
 
 /// One line.
