@@ -35,6 +35,18 @@ Gmm random_mixture(Index K, Index D, Random& random) {
   return gmm;
 }
 
+/// The sigma^2 at which -1/2 (D ln sigma^2 + tr(S) / sigma^2 + tr(R) / sigma^2) is greatest, by bisection of its slope.
+double variance_of_greatest_q(const Matrix& S, const Vector& R) {
+  const auto slope = [&](double v) { return -static_cast<double>(S.rows()) / v + (S.trace() + R.sum()) / (v * v); };
+  double low = 1e-12;
+  double high = 1e12;
+  for (int i = 0; i < 400; ++i) {
+    const double middle = std::sqrt(low) * std::sqrt(high);
+    (slope(middle) > 0.0 ? low : high) = middle;
+  }
+  return low;
+}
+
 /// The definition, sample by sample, with explicit inverses and centred sums.
 EmStep plain_step(const Gmm& gmm, const Matrix& x, const Vector& R, CovarianceType type) {
   const Index N = x.rows();
@@ -61,7 +73,12 @@ EmStep plain_step(const Gmm& gmm, const Matrix& x, const Vector& R, CovarianceTy
     Matrix S = e.transpose() * r.col(k).asDiagonal() * e / step.counts[k];
     shared += step.gmm.priors[k] * S;
     if (type == CovarianceType::diagonal) S = Matrix(S.diagonal().asDiagonal());
-    step.gmm.covariances[static_cast<std::size_t>(k)] = S + Matrix(R.asDiagonal());
+    if (type == CovarianceType::spherical && N > 1) {  // of a single sample every column is constant
+      S = variance_of_greatest_q(S, R) * Matrix::Identity(x.cols(), x.cols());
+    } else {
+      S += Matrix(R.asDiagonal());
+    }
+    step.gmm.covariances[static_cast<std::size_t>(k)] = S;
   }
   if (type == CovarianceType::tied) std::fill(step.gmm.covariances.begin(), step.gmm.covariances.end(), shared);
   return step;
@@ -83,13 +100,14 @@ bool same_bytes(const EmStep& a, const EmStep& b) {
 }  // namespace
 
 TEST_CASE("a step is the E step and the M step as they are defined") {
-  const auto type = GENERATE(CovarianceType::full, CovarianceType::tied, CovarianceType::diagonal);
+  const auto type =
+      GENERATE(CovarianceType::full, CovarianceType::tied, CovarianceType::diagonal, CovarianceType::spherical);
   Random random(11);
   for (const Index D : {1, 2, 3, 4, 5, 7, 9}) {
     for (const Index N : {1, 63, 64, 65, 700}) {
       const Matrix x = random_samples(N, D, random);
       const Gmm gmm = random_mixture(3, D, random);
-      const Vector R = Vector::LinSpaced(D, 0.0, 0.02);
+      const Vector R = D > 1 ? Vector(Vector::LinSpaced(D, 0.0, 0.02)) : Vector::Constant(1, 0.01);
       const EmStep step = em_step(gmm, x, R, type);
       const EmStep plain = plain_step(gmm, x, R, type);
       INFO("D " << D << " N " << N);
@@ -97,6 +115,25 @@ TEST_CASE("a step is the E step and the M step as they are defined") {
       CHECK((step.counts - plain.counts).cwiseAbs().maxCoeff() < 1e-11);
       CHECK(largest_difference(step.gmm, plain.gmm) < 1e-11);
     }
+  }
+}
+
+TEST_CASE("a constant column takes no part in the variance of a spherical component") {
+  Random random(14);
+  Matrix x = random_samples(400, 3, random);
+  const Vector R = Vector::Constant(3, 0.01);
+  Gmm gmm{Vector::Constant(2, 0.5), x.topRows(2), std::vector<Matrix>(2, Matrix::Identity(3, 3))};
+  Gmm without{gmm.priors, gmm.means.leftCols(2), std::vector<Matrix>(2, Matrix::Identity(2, 2))};
+  x.col(2).setConstant(4.5);
+  gmm.means.col(2).setConstant(4.5);
+  CHECK(varying_columns(x) == Vector(Eigen::Vector3d(1, 1, 0)));
+  for (int i = 0; i < 5; ++i) {
+    gmm = em_step(gmm, x, R, CovarianceType::spherical).gmm;
+    without = em_step(without, x.leftCols(2), R.head(2), CovarianceType::spherical).gmm;
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK((gmm.covariances[k].topLeftCorner(2, 2) - without.covariances[k]).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK(gmm.covariances[k](2, 2) == Approx(0.01).epsilon(1e-12));
   }
 }
 
@@ -116,7 +153,8 @@ TEST_CASE("every vector width and every number of threads gives the same bytes")
 }
 
 TEST_CASE("the objective never falls, whatever is added to the diagonal") {
-  const auto type = GENERATE(CovarianceType::full, CovarianceType::tied, CovarianceType::diagonal);
+  const auto type =
+      GENERATE(CovarianceType::full, CovarianceType::tied, CovarianceType::diagonal, CovarianceType::spherical);
   const double added = GENERATE(0.0, 1e-6, 1e-2, 0.5);
   Random random(13);
   for (int trial = 0; trial < 10; ++trial) {

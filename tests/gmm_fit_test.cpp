@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "lfdtools/em_run.hpp"
@@ -52,6 +53,20 @@ bool same_bytes(const Gmm& a, const Gmm& b) {
   return a.priors == b.priors && a.means == b.means && a.covariances == b.covariances;
 }
 
+Gmm in_order_of_time(const Gmm& gmm) {
+  std::vector<Index> order(static_cast<std::size_t>(gmm.components()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return gmm.means(a, 0) < gmm.means(b, 0); });
+  Gmm result = gmm;
+  for (Index k = 0; k < gmm.components(); ++k) {
+    const Index from = order[static_cast<std::size_t>(k)];
+    result.priors[k] = gmm.priors[from];
+    result.means.row(k) = gmm.means.row(from);
+    result.covariances[static_cast<std::size_t>(k)] = gmm.covariances[static_cast<std::size_t>(from)];
+  }
+  return result;
+}
+
 }  // namespace
 
 TEST_CASE("the order of the samples does not matter, nor does the number of threads") {
@@ -72,21 +87,58 @@ TEST_CASE("the order of the samples does not matter, nor does the number of thre
   CHECK_FALSE(same_bytes(fit.gmm, fit_gmm(x, options).gmm));
 }
 
-TEST_CASE("the units of the columns do not matter") {
+TEST_CASE("for each type neither units nor order matter, and the likelihood rises") {
   EmOptions options;
   options.components = 4;
+  options.covariance_type =
+      GENERATE(CovarianceType::full, CovarianceType::tied, CovarianceType::diagonal, CovarianceType::spherical);
   const Samples x = demonstrations(10, 2);
-  const GmmFit fit = fit_gmm(x, options);
+  GmmFit fit = fit_gmm(x, options);
+  CHECK(same_bytes(fit.gmm, fit_gmm(x.colwise().reverse(), options).gmm));
   Vector scale(4);
   scale << 1e3, 1e-3, 7.3, 1e6;
   Samples scaled = x * scale.asDiagonal();
   scaled.rowwise() += Vector::Constant(4, 3.0).transpose();
-  const GmmFit other = fit_gmm(scaled, options);
+  GmmFit other = fit_gmm(scaled, options);
+  // Rounding decides which of the starts that end at the same maximum wins, and so the order of the components.
+  fit.gmm = in_order_of_time(fit.gmm);
+  other.gmm = in_order_of_time(other.gmm);
   CHECK(other.log_likelihood ==
         Approx(fit.log_likelihood - static_cast<double>(x.rows()) * scale.array().log().sum()).epsilon(1e-7));
   CHECK((other.gmm.priors - fit.gmm.priors).cwiseAbs().maxCoeff() < 1e-6);
   const Samples expected = (fit.gmm.means * scale.asDiagonal()).rowwise() + Vector::Constant(4, 3.0).transpose();
   CHECK(((other.gmm.means - expected).array().rowwise() / scale.transpose().array()).abs().maxCoeff() < 1e-6);
+  CHECK(other.entropy == Approx(fit.entropy).epsilon(1e-4));
+  for (std::size_t i = 1; i < fit.history.size(); ++i) {
+    const bool reseeded = std::any_of(fit.collapses.begin(), fit.collapses.end(),
+                                      [&](const Collapse& c) { return c.iteration == static_cast<int>(i); });
+    if (!reseeded) CHECK(fit.history[i] >= fit.history[i - 1] - 1e-12 * std::abs(fit.history[i]));
+  }
+}
+
+TEST_CASE("the covariances of a fit are of the type asked for") {
+  EmOptions options;
+  options.components = 3;
+  Samples x = demonstrations(5, 12);
+  x.col(2).setConstant(0.7);
+  Vector variances(4);
+  for (Index j = 0; j < 4; ++j) variances[j] = (x.col(j).array() - x.col(j).mean()).square().mean();
+  options.covariance_type = CovarianceType::tied;
+  const GmmFit tied = fit_gmm(x, options);
+  for (const Matrix& Sigma : tied.gmm.covariances) CHECK(Sigma == tied.gmm.covariances[0]);
+  options.covariance_type = CovarianceType::diagonal;
+  for (const Matrix& Sigma : fit_gmm(x, options).gmm.covariances) CHECK(Sigma.isDiagonal(0.0));
+  options.covariance_type = CovarianceType::spherical;
+  const GmmFit spherical = fit_gmm(x, options);
+  for (const Matrix& Sigma : spherical.gmm.covariances) {  // one variance, in standardised units
+    CHECK(Sigma.isDiagonal(0.0));
+    CHECK(Sigma(1, 1) / variances[1] == Approx(Sigma(0, 0) / variances[0]).epsilon(1e-9));
+    CHECK(Sigma(3, 3) / variances[3] == Approx(Sigma(0, 0) / variances[0]).epsilon(1e-9));
+    CHECK(Sigma(2, 2) == Approx(spherical.regularization[2]).epsilon(1e-9));  // constant
+  }
+  // One component is the mean of the standardised variances, 1, and the regularisation.
+  options.components = 1;
+  CHECK(fit_gmm(x, options).gmm.covariances[0](1, 1) == Approx(variances[1] * (1.0 + 1e-6)).epsilon(1e-12));
 }
 
 TEST_CASE("constant columns, copies of columns and equal samples are fitted") {

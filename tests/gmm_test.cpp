@@ -94,7 +94,10 @@ TEST_CASE("the fit of the irises is that of R's mclust") {
   const auto oracle = GENERATE(
       Oracle{CovarianceType::full, 2, -214.354704370512, 29}, Oracle{CovarianceType::full, 3, -180.185477131308, 44},
       Oracle{CovarianceType::tied, 2, -296.447574769275, 19}, Oracle{CovarianceType::tied, 3, -256.354043125593, 24},
-      Oracle{CovarianceType::diagonal, 2, -386.185346934487, 17});
+      Oracle{CovarianceType::diagonal, 2, -386.185346934487, 17},
+      // VII of standardised columns, with N sum_j ln scale_j taken off
+      Oracle{CovarianceType::spherical, 2, -526.738949997750, 11},
+      Oracle{CovarianceType::spherical, 3, -460.482020369606, 17});
   EmOptions options;
   options.components = oracle.K;
   options.covariance_type = oracle.type;
@@ -109,6 +112,10 @@ TEST_CASE("the fit of the irises is that of R's mclust") {
     CHECK(fit.bic == Approx(-2 * oracle.log_likelihood + static_cast<double>(oracle.q) * std::log(150.0)).margin(2e-6));
     CHECK(fit.aic == Approx(-2 * oracle.log_likelihood + 2.0 * static_cast<double>(oracle.q)).margin(2e-6));
     CHECK(fit.samples == 150);
+    if (oracle.type == CovarianceType::full) {  // from mclust's responsibilities
+      CHECK(fit.entropy == Approx(oracle.K == 2 ? 0.00533685 : 4.87324396).margin(2e-5));
+      CHECK(fit.icl == Approx(fit.bic + 2 * fit.entropy).epsilon(1e-14));
+    }
   }
 }
 
@@ -142,6 +149,15 @@ TEST_CASE("density, likelihood and responsibilities are those of the definition"
     }
   }
   CHECK(log_likelihood(gmm, x) == Approx(static_cast<double>(sum)).epsilon(1e-12));
+  double entropy = 0.0;
+  for (Index i = 0; i < x.rows(); ++i) {
+    for (Index k = 0; k < 4; ++k) entropy -= r(i, k) > 0.0 ? r(i, k) * std::log(r(i, k)) : 0.0;
+  }
+  CHECK(responsibility_entropy(gmm, x) == Approx(entropy).epsilon(1e-9));
+  Gmm idle = gmm;  // a prior of 0 adds nothing
+  idle.priors << gmm.priors[0] + gmm.priors[3], gmm.priors[1], gmm.priors[2], 0.0;
+  CHECK(responsibility_entropy(idle, x) >= 0.0);
+  CHECK(responsibility_entropy(idle, x) <= 150.0 * std::log(3.0));
   // So far away that even logarithms are all that is left.
   Samples far = Samples::Constant(1, 4, 1e9);
   CHECK(std::isfinite(log_densities(gmm, far)[0]));

@@ -91,6 +91,27 @@ TEST_CASE("mean and covariance are the definition to 1e-12") {
   }
 }
 
+TEST_CASE("without a correlation to the time, components have levels, and the definition holds") {
+  Gmm gmm = random_mixture(4, 3, 5);
+  for (Matrix& Sigma : gmm.covariances) Sigma = Matrix(Sigma.diagonal().asDiagonal());
+  const bool spherical = GENERATE(false, true);
+  if (spherical) {
+    for (Matrix& Sigma : gmm.covariances)
+      Sigma = Sigma(0, 0) * Matrix(Vector(gmm.means.row(0).cwiseAbs()).asDiagonal());
+  }
+  const Vector times = Vector::LinSpaced(51, -0.5, 3.5);
+  const GmrPath path = gmr(gmm, times);
+  for (Index i = 0; i < times.size(); ++i) {
+    const Plain plain = plain_regression(gmm, times[i]);
+    CHECK((path.mean.row(i).transpose() - plain.mean.cast<double>()).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK((path.covariance[i] - plain.covariance.cast<double>()).cwiseAbs().maxCoeff() < 1e-12);
+    for (Index j = 0; j < 3; ++j) {  // an average of the components' means
+      CHECK(path.mean(i, j) <= gmm.means.col(1 + j).maxCoeff() + 1e-12);
+      CHECK(path.mean(i, j) >= gmm.means.col(1 + j).minCoeff() - 1e-12);
+    }
+  }
+}
+
 TEST_CASE("mean and covariance are the moments of the joint density along the line of the time") {
   const Gmm gmm = random_mixture(4, 2, 77);
   std::vector<Matrix> factors;

@@ -65,6 +65,11 @@ GmmFile small_gmm() {
   file.log_likelihood = -180.1;
   file.bic = 391;
   file.aic = 380;
+  file.icl = 395;
+  file.entropy = 2;
+  file.parameters = 11;
+  file.criterion = Criterion::icl;
+  file.likelihood = Likelihood::effective;
   file.samples = 150;
   file.bic_n = 149.5;
   file.iterations = 12;
@@ -72,7 +77,7 @@ GmmFile small_gmm() {
   file.time_range = {0, 2};
   file.start = Vector::Constant(1, 0.1);
   file.goal = Vector::Constant(1, 0.9);
-  file.selection = {{1, -200, 410, 405}, {2, -180.1, 391, 380}};
+  file.selection = {{1, -200, 410, 405, 410.5, 5, 0}, {2, -180.1, 391, 380, 395, 11, 2}};
   return file;
 }
 
@@ -144,6 +149,35 @@ TEST_CASE("a mixture is read as it was written, byte for byte when written again
   REQUIRE(back.goal == file.goal);
   REQUIRE(back.selection.size() == 2);
   REQUIRE(back.selection[1].log_likelihood == -180.1);
+  REQUIRE(back.selection[1].icl == 395);
+  REQUIRE(back.selection[1].parameters == 11);
+  REQUIRE(back.selection[1].entropy == 2);
+  REQUIRE(back.criterion == Criterion::icl);
+  REQUIRE(back.likelihood == Likelihood::effective);
+  REQUIRE(back.icl == 395);
+  REQUIRE(back.parameters == 11);
+}
+
+TEST_CASE("each covariance type is written and read, and its covariances must be of it") {
+  GmmFile file = small_gmm();
+  const std::pair<CovarianceType, std::string> types[] = {{CovarianceType::full, "full"},
+                                                          {CovarianceType::tied, "tied"},
+                                                          {CovarianceType::diagonal, "diagonal"},
+                                                          {CovarianceType::spherical, "spherical"}};
+  for (const auto& [type, word] : types) {
+    file.covariance_type = type;
+    const std::string text = text_of(file, write_gmm);
+    REQUIRE(text.find("\"covariance_type\":\"" + word + "\"") != std::string::npos);
+    if (type != CovarianceType::full) {
+      require_refused(text, read_gmm, "gmm.covariance_type",
+                      type == CovarianceType::tied ? "/covariances/1" : "/covariances/0");
+    }
+  }
+  file.gmm.covariances[0] = file.gmm.covariances[1];
+  for (const auto& [type, word] : types) {
+    file.covariance_type = type;
+    REQUIRE(read_gmm(document(text_of(file, write_gmm))).covariance_type == type);
+  }
 }
 
 TEST_CASE("a mixture by hand needs only what regression uses") {
@@ -183,6 +217,10 @@ TEST_CASE("a mixture that disagrees with itself is refused") {
   refused("\"version\":1", "\"version\":2", "json.newer_version", "/version");
   refused("lfdtools.gmm", "lfdtools.dmp", "json.wrong_format", "/format");
   refused("\"full\"", "\"round\"", "json.out_of_range", "/covariance_type");
+  refused("\"full\"", "null", "json.wrong_type", "/covariance_type");
+  refused("\"criterion\":\"icl\"", "\"criterion\":\"mdl\"", "json.out_of_range", "/criterion");
+  refused("\"effective\"", "\"some\"", "json.out_of_range", "/bic_likelihood");
+  refused("\"parameters\":5", "\"parameters\":-5", "json.out_of_range", "/selection/0/parameters");
   refused("\"bic_n\"", "\"bic_m\"", "json.unknown_key", "/bic_m");
 }
 
