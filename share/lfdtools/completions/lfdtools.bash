@@ -7,7 +7,8 @@ _lfdtools_options() {
   case $1 in
     demo-synth) echo "$common --seed --write --no-obstacle --target --repetitions" ;;
     demo-align) echo "$common $table -j --jobs --reference --clock --window --trim --samples --leave-out-outliers --costs" ;;
-    gmm-fit) echo "$common $table -j --jobs --seed -k --components --bic-n --restarts" ;;
+    gmm-fit) echo "$common $table -j --jobs --seed -k --components --covariance-type --select --bic-n" \
+                  "--bic-likelihood --restarts" ;;
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
@@ -28,7 +29,10 @@ _lfdtools_words() {
     demo-synth:--write) echo "demonstrations intentions holes new-holes" ;;
     demo-align:--reference) echo "medoid longest dba" ;;
     demo-align:--clock) echo "mean reference" ;;
+    gmm-fit:--covariance-type) echo "full tied diagonal spherical" ;;
+    gmm-fit:--select) echo "bic aic icl" ;;
     gmm-fit:--bic-n) echo "samples" ;;
+    gmm-fit:--bic-likelihood) echo "samples effective" ;;
     dmp-fit:--scaling) echo "none goal" ;;
     dmp-fit:--fit) echo "trajectory ls lwr" ;;
     mvgpr-train:--model) echo "auto axis full joint" ;;
