@@ -28,7 +28,7 @@ enum class CovarianceType {
 /// BIC + 2 E, E the entropy of the responsibilities (gmm.hpp): the BIC of the samples together with the component that
 /// each came from, so that components which share samples are paid for. Biernacki, Celeux, Govaert, IEEE Trans. PAMI 22
 /// (2000) 719-725, there with each sample given to its likeliest component; with the responsibilities themselves, as
-/// here, McLachlan and Peel, Finite Mixture Models (2000), section 6.10. Smaller is better.
+/// here, McLachlan and Peel, Finite Mixture Models (2000). Smaller is better.
 [[nodiscard]] double icl(double log_likelihood, Eigen::Index q, double n, double entropy);
 
 enum class Criterion { bic, aic, icl };

@@ -15,7 +15,7 @@ END {
   fast = rates[R]; slow = rates[1]; middle = rates[int((R + 1) / 2)]
   mark[column(price[fast])] = "a"; mark[column(price[middle])] = "b"; mark[column(price[slow])] = "c"
   mark[column(effective)] = "d"
-  printf "             nats a sample at\n K to K+1   %3d  %3d  %3d Hz\n", slow, middle, fast
+  printf "             nats a sample at    bars: at %d Hz, log scale\n K to K+1   %3d  %3d  %3d Hz\n", middle, slow, middle, fast
   for (k = 1; k <= K; ++k) {
     line = ""
     for (i = 1; i <= width; ++i) {
