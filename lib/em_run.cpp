@@ -31,8 +31,9 @@ Health health(const EmStep& step, Index k, const Vector& varies, const Vector& r
   return Health::sound;
 }
 
-/// Starts component k again at a badly explained sample, as wide as the components are on average.
-void reseed(const Matrix& samples, const Gmm& before, Index k, std::size_t rank, Gmm& gmm) {
+/// Starts component k again at a badly explained sample, as wide as the components are on average, or as it is where
+/// all share a sound covariance.
+void reseed(const Matrix& samples, const Gmm& before, Index k, std::size_t rank, bool shared, Gmm& gmm) {
   const Vector density = log_densities(before, samples);
   std::vector<Index> order(static_cast<std::size_t>(density.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -46,7 +47,7 @@ void reseed(const Matrix& samples, const Gmm& before, Index k, std::size_t rank,
     Sigma += before.priors[other] * before.covariances[static_cast<std::size_t>(other)];
   }
   gmm.means.row(k) = samples.row(order[rank]);
-  gmm.covariances[static_cast<std::size_t>(k)] = Sigma;
+  if (!shared) gmm.covariances[static_cast<std::size_t>(k)] = Sigma;
   gmm.priors[k] = 0.0;
   gmm.priors *= (1.0 - 1.0 / K) / gmm.priors.sum();
   gmm.priors[k] = 1.0 / K;
@@ -72,7 +73,8 @@ void advance(const Matrix& samples, const Vector& regularization, const EmOption
       const Health state = health(step, k, varies, regularization, options.covariance_type);
       if (state == Health::sound) continue;
       if (K > 1 && static_cast<Index>(run.collapses.size()) < K) {
-        reseed(samples, run.gmm, k, run.collapses.size(), step.gmm);
+        const bool shared = options.covariance_type == CovarianceType::tied && state == Health::thin;
+        reseed(samples, run.gmm, k, run.collapses.size(), shared, step.gmm);
         run.collapses.push_back({run.iterations, k, step.counts[k]});
       } else if (state == Health::singular) {
         run.failed = true;

@@ -126,6 +126,14 @@ TEST_CASE("the covariances of a fit are of the type asked for") {
   options.covariance_type = CovarianceType::tied;
   const GmmFit tied = fit_gmm(x, options);
   for (const Matrix& Sigma : tied.gmm.covariances) CHECK(Sigma == tied.gmm.covariances[0]);
+  // Also where the last iteration has started a component again.
+  Matrix y = Matrix(demonstrations(2, 3)).rowwise() - demonstrations(2, 3).colwise().mean();
+  EmRun run;
+  run.gmm = {Vector::Constant(2, 0.5), y.topRows(2), std::vector<Matrix>(2, Matrix::Identity(4, 4))};
+  run.gmm.means.row(1).setConstant(50.0);
+  advance(y, Vector::Constant(4, 1e-6), options, 1, 1, run);
+  REQUIRE(run.collapses.size() == 1);
+  CHECK(run.gmm.covariances[0] == run.gmm.covariances[1]);
   options.covariance_type = CovarianceType::diagonal;
   for (const Matrix& Sigma : fit_gmm(x, options).gmm.covariances) CHECK(Sigma.isDiagonal(0.0));
   options.covariance_type = CovarianceType::spherical;
