@@ -69,13 +69,14 @@ int main(int argc, char** argv) {
   std::string bic_n = "samples";
   cli::Program program("gmm-fit", "Fit a Gaussian mixture to the aligned demonstrations of each target.");
   program.reads("aligned demonstrations CSV").uses_jobs().uses_seed().uses_columns();
-  program.integer_range("-k,--components", components, {1, 10'000}, "components, or the range that --select chooses from");
+  program.integer_range("-k,--components", components, {1, 10'000},
+                        "components, or the range that --select chooses from");
   program.choice("--covariance-type", options.covariance_type,
                  {{"full", CovarianceType::full},
                   {"tied", CovarianceType::tied},
                   {"diagonal", CovarianceType::diagonal},
                   {"spherical", CovarianceType::spherical}},
-                 "covariances: of each component, one for all, without correlations, one variance (standardised)");
+                 "each its own, one for all, no correlations, or one variance for all standardised columns");
   program.choice("--select", criterion.criterion,
                  {{"bic", Criterion::bic}, {"aic", Criterion::aic}, {"icl", Criterion::icl}},
                  "what chooses the number of components");
