@@ -22,6 +22,7 @@ awk -F '\t' -v pairs="$lines.pairs" '
   function layer_of(path,   name) {
     if (path ~ /^tools\//) return "tools"
     if (path ~ /(^|\/)cli\//) return "cli"
+    if (path ~ /(^|\/)plot\//) return "plot"
     if (path ~ /(^|\/)io\//) return "io"
     name = path
     sub(/.*\//, "", name)

@@ -24,23 +24,11 @@ bool tries_to_be_number(const std::string& text) {
   return first != std::string::npos && text[first] >= '0' && text[first] <= '9';
 }
 
-}  // namespace
-
-const std::vector<std::string>& label_columns() {
-  static const std::vector<std::string> names{"target", "teacher", "demo", "sample"};
-  return names;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
-void CsvTable::Impl::read_header(std::size_t f, LineReader& lines) {
-  const std::string& name = inputs[f].name();
+/// The column names of the header, the next line of an input. @throws as csv_columns
+std::vector<std::string> header_names(const Input& input, LineReader& lines) {
+  const std::string& name = input.name();
   char mark[2] = {};
-  if (inputs[f].read_at(0, mark, 2) == 2 &&
+  if (input.read_at(0, mark, 2) == 2 &&
       (std::string_view(mark, 2) == "\xFF\xFE" || std::string_view(mark, 2) == "\xFE\xFF")) {
     fail_csv("csv.utf16", "the file is UTF-16: save it as UTF-8", name, 1, 1);
   }
@@ -77,6 +65,30 @@ void CsvTable::Impl::read_header(std::size_t f, LineReader& lines) {
     fail_csv("csv.semicolon", "the columns are separated by semicolons: commas, and decimal points, are needed", name,
              1, names[0].find(';') + 1 + shift);
   }
+  return names;
+}
+
+}  // namespace
+
+const std::vector<std::string>& label_columns() {
+  static const std::vector<std::string> names{"target", "teacher", "demo", "sample"};
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+std::vector<std::string> csv_columns(const Input& input, std::size_t line_limit) {
+  LineReader lines(input, 0, input.size(), 1, line_limit, true);
+  return header_names(input, lines);
+}
+
+void CsvTable::Impl::read_header(std::size_t f, LineReader& lines) {
+  const std::string& name = inputs[f].name();
+  const std::vector<std::string> names = header_names(inputs[f], lines);
   File& file = files.emplace_back();
   file.data_begin = lines.end();
   if (f == 0) columns = names;

@@ -10,8 +10,13 @@
 namespace lfd {
 
 std::vector<Goal> read_goals(const std::string& name, const std::vector<std::string>& signals, Messages& messages) {
+  return read_goals(Input(name), signals, messages);
+}
+
+std::vector<Goal> read_goals(Input input, const std::vector<std::string>& signals, Messages& messages) {
+  const std::string name = input.name();
   std::vector<Input> inputs;
-  inputs.emplace_back(name);
+  inputs.push_back(std::move(input));
   const CsvTable table(std::move(inputs), messages, {.grouped = false});
   const auto starts = prefixed("start_", signals);
   const auto start_columns = std::count_if(starts.begin(), starts.end(), [&](const auto& s) { return table.has(s); });

@@ -88,6 +88,10 @@ class CsvTable {
 /// Those that are set, in that order.
 [[nodiscard]] std::vector<std::string> label_columns(const Labels& labels);
 
+/// The column names of a file, without a look at its rows: what is in it may be told by them.
+/// @throws DataError as CsvTable does for a header
+[[nodiscard]] std::vector<std::string> csv_columns(const Input& input, std::size_t line_limit = std::size_t{1} << 20);
+
 /// Writes a table cell by cell. Text is quoted where it must be.
 class CsvWriter {
  public:

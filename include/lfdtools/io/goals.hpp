@@ -15,5 +15,7 @@ namespace lfd {
 ///         [goals.repeated_target], [goals.duration] unless positive
 [[nodiscard]] std::vector<Goal> read_goals(const std::string& name, const std::vector<std::string>& signals,
                                            Messages& messages);
+/// The same from an input that is open.
+[[nodiscard]] std::vector<Goal> read_goals(Input input, const std::vector<std::string>& signals, Messages& messages);
 
 }  // namespace lfd

@@ -1,0 +1,76 @@
+#include "lfdtools/io/scene_file.hpp"
+
+#include "json_check.hpp"
+
+namespace lfd {
+namespace {
+
+constexpr const char* format = "lfdtools.scene";
+constexpr std::size_t most_obstacles = 10'000;
+
+SolidShape shape_of(const JsonView& view) {
+  const std::string type = view.string();
+  if (type == "box") return SolidShape::box;
+  if (type == "sphere") return SolidShape::sphere;
+  if (type == "cylinder") return SolidShape::cylinder;
+  if (type == "capsule") return SolidShape::capsule;
+  if (type == "plane") return SolidShape::plane;
+  view.fail("scene.type", "the type is box, sphere, cylinder, capsule or plane");
+}
+
+Solid read_solid(const JsonView& view) {
+  Solid solid;
+  if (const auto name = view.find("name")) solid.name = name->string();
+  solid.shape = shape_of(view.at("type"));
+  const JsonView pose = view.at("pose");
+  pose.only({"position", "orientation"});
+  solid.pose.position = pose.at("position").vector(3);
+  if (const auto orientation = pose.find("orientation")) {
+    const Vector q = orientation->vector(4);
+    checked(*orientation, [&] { solid.pose.rotation = rotation_from_quaternion(q); });
+  }
+  switch (solid.shape) {
+    case SolidShape::box: {
+      view.only({"name", "type", "pose", "size"});
+      const JsonView size = view.at("size");
+      solid.size = size.vector(3);
+      for (std::size_t i = 0; i < 3; ++i) (void)size.at(i).positive();
+      break;
+    }
+    case SolidShape::sphere:
+      view.only({"name", "type", "pose", "radius"});
+      solid.radius = view.at("radius").positive();
+      break;
+    case SolidShape::cylinder:
+    case SolidShape::capsule:
+      view.only({"name", "type", "pose", "radius", "length"});
+      solid.radius = view.at("radius").positive();
+      solid.length = view.at("length").positive();
+      break;
+    case SolidShape::plane:
+      view.only({"name", "type", "pose"});
+      break;
+  }
+  return solid;
+}
+
+}  // namespace
+
+Scene read_scene(const JsonDocument& document) {
+  document.expect(format);
+  const JsonView root = document.root();
+  root.only({"format", "version", "name", "frame", "obstacles"});
+  Scene scene;
+  if (const auto frame = root.find("frame")) {
+    scene.frame = frame->string();
+    if (scene.frame != "base" && scene.frame != "base_link") {
+      frame->fail("scene.frame", "the frame is base or base_link");
+    }
+  }
+  const JsonView list = root.at("obstacles");
+  if (list.size() > most_obstacles) list.fail("json.out_of_range", "there are over 10000 obstacles");
+  for (std::size_t i = 0; i < list.size(); ++i) scene.obstacles.push_back(read_solid(list.at(i)));
+  return scene;
+}
+
+}  // namespace lfd
