@@ -26,7 +26,8 @@ CurveStyle::CurveStyle(const Material& material) {
     const std::string name = series_name(curve.labels);
     if (series_.emplace(name, series_.size()).second) names_.push_back(name);
   }
-  many_ = counts_.contains(colored_) && counts_[colored_] > most_curves * names_.size();
+  many_ =
+      counts_.contains(colored_) && (counts_[colored_] > most_curves * names_.size() || names_.size() > most_entries);
   find_ends(material);
 }
 
@@ -39,7 +40,7 @@ void CurveStyle::find_ends(const Material& material) {
   for (const Curve& curve : material.curves) {
     if (curve.goal) add(series_name(curve.labels), *curve.goal);
   }
-  ends_name_ = ends_.empty() ? "end" : "goal";
+  ends_name_ = ends_.empty() ? "mean end" : "goal";
   std::map<std::string, std::pair<Vector, double>> sums;
   for (const Curve& curve : material.curves) {
     const Vector end = curve.trajectory.goal();
@@ -56,16 +57,20 @@ void CurveStyle::find_ends(const Material& material) {
 
 Stroke CurveStyle::stroke(const Curve& curve) const {
   if (curve.role == colored_) {
-    const Look own = look(series_.at(series_name(curve.labels)));
-    if (many_) return {own.color, 0.7, own.dash, 0.5};
-    return {own.color, 1.6, own.dash, 1};
+    const Look own = look_of(series_.at(series_name(curve.labels)));
+    return many_ ? Stroke{own.color, 0.7, own.dash, 0.5} : Stroke{own.color, 1.6, own.dash, 1};
   }
   if (curve.role == Role::demonstration) return {light_grey, 0.6, "", 0.8};
   return colored_ == Role::motion ? Stroke{"#5a5a5a", 0.9, "", 1} : Stroke{black, 1.2, "", 1};
 }
 
+Look CurveStyle::look_of(std::size_t series) const {
+  return many_ ? dense_look(series) : look(series);
+}
+
 bool CurveStyle::cased(const Curve& curve) const {
-  return curve.role != Role::demonstration && counts_.size() > 1 && !(curve.role == colored_ && many_);
+  if (counts_.size() < 2 || curve.role == Role::demonstration) return false;
+  return curve.role == colored_ ? !many_ : colored_ == Role::demonstration;
 }
 
 std::vector<LegendEntry> CurveStyle::legend() const {
@@ -81,7 +86,7 @@ std::vector<LegendEntry> CurveStyle::legend() const {
   if (named && names_.size() <= most_entries) {
     entries.push_back({fmt::format("{} to target", words(colored_))});
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      const Look own = look(i);
+      const Look own = look_of(i);
       entries.push_back({names_[i], Stroke{own.color, 1.8, own.dash, 1}});
     }
   } else {

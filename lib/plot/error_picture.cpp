@@ -99,6 +99,7 @@ double bar_limit(const std::vector<double>& means, const std::vector<double>& gr
 
 double draw_errors(Svg& svg, const Material& material, double top) {
   std::size_t targets = 0;
+  bool any_cut = false;
   for (std::size_t m = 0; m < material.measures.size(); ++m) {
     const std::vector<Bar> bars = bars_of(material, static_cast<Eigen::Index>(m));
     double names = 0;
@@ -116,7 +117,7 @@ double draw_errors(Svg& svg, const Material& material, double top) {
     across.high = across.padded(0.03, 1).high;
     const double height = row_height * static_cast<double>(bars.size()) + 8;
     const double left = std::min(names + 24, 0.4 * page_width);
-    Panel panel({left, top + room_above + 6, page_width - left - 110, height}, across, {0, 1, false},
+    Panel panel({left, top + room_above + 6, page_width - left - 130, height}, across, {0, 1, false},
                 title_of(material.measures[m]), "");
     panel.values_up = false;
     panel.draw_ground(svg);
@@ -125,13 +126,15 @@ double draw_errors(Svg& svg, const Material& material, double top) {
       const double middle = panel.box.top + 4 + row_height * (static_cast<double>(i) + 0.5);
       svg.text({panel.box.left - 8, middle + 4}, bars[i].method, {.size = text_size, .anchor = Anchor::end});
       draw_bar(svg, panel, bars[i], middle);
+      any_cut = any_cut || greatest[i] > panel.x.range.high;
     }
     panel.draw_frame(svg);
     top = panel.box.bottom() + room_below;
   }
-  const std::vector<LegendEntry> entries{
+  std::vector<LegendEntry> entries{
       {fmt::format("mean over {} target{}", targets, targets == 1 ? "" : "s"), {}, {}, "#56b4e9", 0.75},
       {"one target left out", {}, Marker{MarkerShape::circle, black, 3.6, true}}};
+  if (any_cut) entries.push_back({"//  the bar goes on; dots beyond the axis are counted"});
   return top + draw_legend(svg, entries, {10, top, page_width - 20, 0});
 }
 

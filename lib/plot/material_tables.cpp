@@ -165,6 +165,7 @@ void MaterialReader::read_reliability(Table pending) {
 Material MaterialReader::take() {
   std::stable_sort(material_.curves.begin(), material_.curves.end(),
                    [](const Curve& a, const Curve& b) { return a.role < b.role; });
+  if (material_.signals.empty() && !material_.obstacles.empty()) material_.signals = {"x", "y", "z"};
   return std::move(material_);
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double tick_length = 4;
 constexpr double tick_text = 10;
 constexpr double label_text = 11.5;
-constexpr double room_of_tick_up = 26;  // between two ticks of the vertical axis
+constexpr double room_of_tick_up = 22;  // between two ticks of the vertical axis
 
 }  // namespace
 
@@ -29,12 +29,12 @@ std::vector<Point> Panel::line(const Eigen::Ref<const Vector>& across, const Eig
 
 std::vector<Tick> Panel::ticks_across() const {
   // As many as their own texts leave room for.
-  for (int most = 10; most > 2; --most) {
+  for (int most = integers ? 25 : 10; most > 2; --most) {
     std::vector<Tick> ticks = nice_ticks(x.range, most);
     if (integers) std::erase_if(ticks, [](const Tick& tick) { return tick.value != std::round(tick.value); });
     double widest = 0;
     for (const Tick& tick : ticks) widest = std::max(widest, text_width(tick.text, tick_text));
-    if (static_cast<double>(ticks.size()) * (widest + 16) <= box.width) return ticks;
+    if (static_cast<double>(ticks.size()) * (widest + 9) <= box.width && ticks.size() > 1) return ticks;
   }
   return nice_ticks(x.range, 2);
 }
@@ -71,7 +71,7 @@ void Panel::draw_frame(Svg& svg) const {
   if (texts_below) {
     svg.text({box.left + box.width / 2, box.bottom() + 30}, x.label, {.size = label_text, .anchor = Anchor::middle});
   }
-  svg.text({std::max(box.left - 13 - widest, box.left - room_left + 11), box.top + box.height / 2}, y.label,
+  svg.text({std::max(box.left - 14 - widest, box.left - room_left + 11), box.top + box.height / 2}, y.label,
            {.size = label_text, .anchor = Anchor::middle, .upwards = true});
 }
 

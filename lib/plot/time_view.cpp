@@ -12,6 +12,7 @@ namespace {
 
 constexpr double band_sds = 2;  // half-width of a band
 constexpr double band_opacity = 0.22;
+constexpr const char* component_dash = "3 2";
 constexpr int most_in_row = 3;
 constexpr int ellipse_corners = 64;
 
@@ -51,14 +52,14 @@ void draw_signal(Svg& svg, const Material& material, const CurveStyle& style, Ei
   for (const Curve& curve : material.curves) {
     const std::vector<Point> line = panel.line(curve.trajectory.times, curve.trajectory.positions.col(signal));
     const Stroke stroke = style.stroke(curve);
-    if (style.cased(curve)) svg.polyline(line, {"#ffffff", stroke.width + 1.4, "", 0.8});
+    if (style.cased(curve)) svg.polyline(line, {"#ffffff", stroke.width + 1.4, stroke.dash, 0.8});
     svg.polyline(line, stroke);
   }
   for (const GmmFile& mixture : material.mixtures) {
     for (Eigen::Index k = 0; k < mixture.gmm.components(); ++k) {
       std::vector<Point> outline = ellipse(mixture.gmm, k, signal);
       for (Point& point : outline) point = panel.at(point.x, point.y);
-      svg.polygon(outline, black, 0.08, {black, 0.9, "", 1});
+      svg.polygon(outline, black, 0.06, {black, 0.9, component_dash, 1});
     }
   }
   svg.end_clip();
@@ -114,7 +115,7 @@ double draw_motion_legend(Svg& svg, const Material& material, const CurveStyle& 
                                  [](const Curve& curve) { return curve.sd.size() > 0; });
   if (times && bands) entries.push_back({"two standard deviations", {}, {}, grey, band_opacity * 2});
   if (times && !material.mixtures.empty()) {
-    entries.push_back({"mixture component, two standard deviations", Stroke{black, 0.9, "", 1}});
+    entries.push_back({"mixture component, two standard deviations", Stroke{black, 0.9, component_dash, 1}});
   }
   if (planes && !style.ends().empty()) {
     entries.push_back({style.ends_name(), {}, Marker{MarkerShape::plus, black, 9, true}});

@@ -7,6 +7,7 @@
 
 #include "lfdtools/plot/legend.hpp"
 #include "lfdtools/plot/material.hpp"
+#include "lfdtools/plot/palette.hpp"
 
 namespace lfd::plot {
 
@@ -35,6 +36,7 @@ class CurveStyle {
 
  private:
   void find_ends(const Material& material);
+  [[nodiscard]] Look look_of(std::size_t series) const;
 
   std::map<Role, std::size_t> counts_;         // curves of each role
   Role colored_ = Role::motion;                // whose targets have colours

@@ -18,7 +18,7 @@ using Plane = std::pair<std::string, std::string>;
 /// signals none.
 [[nodiscard]] std::vector<Plane> default_planes(const Material& material);
 
-/// A row of plane views, all to one scale, with goals, their names, and the outlines of obstacles.
+/// A row of plane views, each to scale, with goals, their names, and the outlines of obstacles.
 /// @param top  upper edge on the page [px]   @return lower edge [px]
 /// @throws DataError [plot.no_such_signal] of a plane
 double draw_planes(Svg& svg, const Material& material, const CurveStyle& style, const std::vector<Plane>& planes,

@@ -10,9 +10,9 @@ namespace lfd::plot {
 
 inline constexpr const char* black = "#000000";
 inline constexpr const char* grey = "#8c8c8c";
-inline constexpr const char* light_grey = "#c8c8c8";
+inline constexpr const char* light_grey = "#b0b0b0";
 inline constexpr const char* grid_grey = "#e6e6e6";
-inline constexpr const char* obstacle_fill = "#8c8c8c";
+inline constexpr const char* obstacle_fill = "#f0e442";
 inline constexpr double obstacle_opacity = 0.4;
 
 /// What tells one series from the others.
@@ -22,8 +22,10 @@ struct Look {
   MarkerShape marker = MarkerShape::circle;
 };
 
-/// Look of series number i, from 0. Colours of Okabe and Ito (2008) without yellow, which is lost on white; seven
-/// series in each dash, so that 28 differ.
+/// Look of series number i, from 0. Colours of Okabe and Ito (2008) without yellow, which is lost on white; neighbours
+/// differ in colour, dash and marker, and 28 series in colour or dash.
 [[nodiscard]] Look look(std::size_t i);
+/// The same for many thin lines, which are solid as long as the colours suffice, for 7 series.
+[[nodiscard]] Look dense_look(std::size_t i);
 
 }  // namespace lfd::plot

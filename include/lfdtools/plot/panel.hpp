@@ -9,7 +9,7 @@
 namespace lfd::plot {
 
 /// Room beside a panel [px].
-inline constexpr double room_left = 52;   ///< tick texts and label of the vertical axis
+inline constexpr double room_left = 56;   ///< tick texts and label of the vertical axis
 inline constexpr double room_below = 38;  ///< the same of the horizontal one
 inline constexpr double room_right = 10;
 inline constexpr double room_above = 12;
