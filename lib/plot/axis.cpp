@@ -51,18 +51,18 @@ Range Range::padded(double share, double least) const {
 }
 
 std::vector<Tick> nice_ticks(const Range& range, int most) {
+  const double slack = 1e-9 * range.length();  // a tick on the border stays one
   const double raw = range.length() / std::max(most, 2);
   const double power = std::floor(std::log10(raw));
   double step = 0;
   // The first step, going up, that gives few enough ticks.
   for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
     step = factor * std::pow(10.0, power);
-    if (std::floor(range.high / step) - std::ceil(range.low / step) + 1 <= std::max(most, 2)) break;
+    if (std::floor((range.high + slack) / step) - std::ceil((range.low - slack) / step) + 1 <= std::max(most, 2)) break;
   }
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   const bool plain = decimals <= most_decimals && std::max(std::abs(range.low), std::abs(range.high)) < longest_tick;
   std::vector<Tick> ticks;
-  const double slack = 1e-9 * range.length();
   for (double k = std::ceil((range.low - slack) / step); k * step <= range.high + slack; ++k) {
     std::string text = plain ? fmt::format("{:.{}f}", k * step, decimals) : fmt::format("{:.6g}", k * step);
     if (text.find_first_of("123456789") == std::string::npos && text[0] == '-') text.erase(0, 1);

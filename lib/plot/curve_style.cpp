@@ -40,7 +40,7 @@ void CurveStyle::find_ends(const Material& material) {
   for (const Curve& curve : material.curves) {
     if (curve.goal) add(series_name(curve.labels), *curve.goal);
   }
-  ends_name_ = ends_.empty() ? "mean end" : "goal";
+  ends_name_ = ends_.empty() ? "end" : "goal";
   std::map<std::string, std::pair<Vector, double>> sums;
   for (const Curve& curve : material.curves) {
     const Vector end = curve.trajectory.goal();
@@ -48,6 +48,7 @@ void CurveStyle::find_ends(const Material& material) {
     if (is_new) continue;
     sum->second.first += end;
     sum->second.second += 1;
+    if (ends_name_ == "end") ends_name_ = "mean end";
   }
   for (const Curve& curve : material.curves) {
     const std::string name = series_name(curve.labels);

@@ -39,6 +39,24 @@ const char* missing_for(const Material& material, PictureKind kind, const std::v
   return nullptr;
 }
 
+/// Title of the document where the user has none: it is read out, not drawn.
+const char* heading(PictureKind kind) {
+  switch (kind) {
+    case PictureKind::motions:
+      return "Motions in planes and against time";
+    case PictureKind::planes:
+      return "Motions in planes";
+    case PictureKind::time:
+      return "Signals against time";
+    case PictureKind::weights:
+      return "Weights of movement primitives";
+    case PictureKind::errors:
+      return "Errors at targets that were left out";
+    default:
+      return "Reliability of bands";
+  }
+}
+
 double draw_motions(Svg& svg, const Material& material, PictureKind kind, const std::vector<Plane>& planes,
                     double top) {
   const CurveStyle style(material);
@@ -94,8 +112,7 @@ std::string draw(const Material& material, const PictureOptions& options, Messag
   if (kind == PictureKind::weights) bottom = draw_weights(svg, material, bottom);
   if (kind == PictureKind::errors) bottom = draw_errors(svg, material, bottom);
   if (kind == PictureKind::reliability) bottom = draw_reliability(svg, material, bottom);
-  return svg.document(page_width, bottom + 6,
-                      options.title.empty() ? fmt::format("{}", fmt::join(material.found, ", ")) : options.title);
+  return svg.document(page_width, bottom + 6, options.title.empty() ? heading(kind) : options.title);
 }
 
 std::vector<Plane> planes_of(const std::vector<std::string>& words) {

@@ -197,6 +197,7 @@ void Svg::marker(Point at, const Marker& marker) {
 }
 
 void Svg::text(Point at, std::string_view words, const TextStyle& style) {
+  if (words.empty()) return;
   const char* anchor = style.anchor == Anchor::start ? "start" : style.anchor == Anchor::middle ? "middle" : "end";
   std::string more = style.bold ? " font-weight=\"bold\"" : "";
   if (style.halo) more += " stroke=\"#ffffff\" stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
