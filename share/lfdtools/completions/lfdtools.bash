@@ -14,6 +14,7 @@ _lfdtools_options() {
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
     skill-generate) echo "$common $gates --goal --goals --target --start --duration --dt --weights --derivatives" ;;
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --trim -n --basis -k --components --table" ;;
+    skill-plot) echo "$common $table --kind --planes --title" ;;
     ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
     ur10-fk) echo "$common --robot --tool --frame" ;;
@@ -41,13 +42,15 @@ _lfdtools_words() {
     mvgpr-train:--omega) echo "integrated ml" ;;
     skill-validate:--methods) echo "skill paper paper-full line nearest mean affine affine-means" ;;
     skill-validate:--road) echo "demonstrations references" ;;
+    skill-plot:--kind) echo "auto motions planes time weights errors reliability" ;;
+    skill-plot:--planes) echo "x-y y-z x-z x-y,y-z x-y,y-z,x-z" ;;
     *:--robot) echo "ur10 ur10e" ;;
     *:--frame) echo "base base_link" ;;
     dmp-fit:--no-gate) echo "goal_change" ;;
     skill-generate:--no-gate) echo "region start" ;;
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
-    *:-j | *:--jobs | *:--seed | *:--columns | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
+    *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
     *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start) return 2 ;;
     *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--max-*) return 2 ;;
     *) return 1 ;;
@@ -74,4 +77,4 @@ _lfdtools() {
 
 # Where there is nothing to say (files, numbers), bash offers file names.
 complete -o bashdefault -o default -F _lfdtools demo-align demo-synth dmp-fit gmm-fit gmr-regress motion-compare \
-  mvgpr-train skill-generate skill-validate ur10-fk ur10-ik
+  mvgpr-train skill-generate skill-plot skill-validate ur10-fk ur10-ik

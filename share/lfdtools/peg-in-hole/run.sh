@@ -14,4 +14,5 @@ make --no-print-directory -f "$here/Makefile" -j2 BIN="$bin" OUT="$out" "$@" >"$
 }
 cat "$out/results.txt"
 echo "results: $out/results.txt, results.csv, claims.csv"
+echo "figures: $out/A/fig3.svg, fig4.svg, fig5.svg; the same in $out/B, and fig8.svg"
 echo "stages:  $out/A and $out/B: demos, aligned, gmm, reference, dmp, skill.json, motion, joints"
