@@ -46,9 +46,18 @@ TEST_CASE("Ticks are never more than asked for, and at least one") {
 TEST_CASE("Tick texts have one number of decimals, a minus sign of their own, and no minus zero") {
   CHECK(texts(nice_ticks(range(-0.1, 0.1), 3)) == std::vector<std::string>{"\u22120.1", "0.0", "0.1"});
   CHECK(texts(nice_ticks(range(0.795, 0.806), 3)) == std::vector<std::string>{"0.795", "0.800", "0.805"});
-  CHECK(texts(nice_ticks(range(0, 3e-8), 4)) ==
-        std::vector<std::string>{"0", "1e\u221208", "2e\u221208", "3e\u221208"});
+  CHECK(texts(nice_ticks(range(0, 3e-12), 4)) ==
+        std::vector<std::string>{"0", "1e\u221212", "2e\u221212", "3e\u221212"});
   CHECK(texts(nice_ticks(range(0, 2e7), 3)) == std::vector<std::string>{"0", "1e+07", "2e+07"});
+}
+
+TEST_CASE("Small and large values share a power of ten") {
+  CHECK(exponent_of(range(0, 1)) == 0);
+  CHECK(exponent_of(range(-0.5, 0)) == 0);
+  CHECK(exponent_of(range(0, 0.0015)) == -3);
+  CHECK(exponent_of(range(1e-9, 2e-9)) == -9);
+  CHECK(exponent_of(range(-3e7, 1)) == 6);
+  CHECK(exponent_of(range(0, 0)) == 0);
 }
 
 TEST_CASE("A range grows by a share, and a constant gets room on both sides") {

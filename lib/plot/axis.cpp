@@ -11,9 +11,10 @@ namespace lfd::plot {
 namespace {
 
 constexpr double largest = 1e150;    // beyond it the arithmetic of pixels may overflow
-constexpr double same_share = 1e-9;  // a shorter range is rounding of one value
-constexpr int most_decimals = 6;     // of a tick in full; otherwise with an exponent
+constexpr double same_share = 1e-6;  // a shorter range is rounding of one value
+constexpr int most_decimals = 9;     // of a tick in full; otherwise with an exponent
 constexpr double longest_tick = 1e6;
+constexpr double smallest_plain = 2e-3;
 
 }  // namespace
 
@@ -48,6 +49,12 @@ Range Range::padded(double share, double least) const {
   double pad = share * length();
   if (length() <= same_share * size || length() == 0) pad = std::max(size / 20, least);
   return {low - pad, high + pad, false};
+}
+
+int exponent_of(const Range& range) {
+  const double size = std::max(std::abs(range.low), std::abs(range.high));
+  if (size == 0 || (size >= smallest_plain && size < longest_tick)) return 0;
+  return 3 * static_cast<int>(std::floor(std::log10(size) / 3));
 }
 
 std::vector<Tick> nice_ticks(const Range& range, int most) {

@@ -50,6 +50,13 @@ std::vector<Bar> bars_of(const Material& material, Eigen::Index measure) {
   return bars;
 }
 
+/// The mean, and how many targets lie beyond the end of the axis.
+std::string figures_of(const Bar& bar, double limit) {
+  const auto beyond = std::count_if(bar.values.begin(), bar.values.end(), [&](double v) { return v > limit; });
+  const std::string more = beyond > 0 ? fmt::format(", {} beyond", beyond) : "";
+  return fmt::format("{:.{}f}{}", bar.mean, bar.mean < 10 ? 2 : 1, more);
+}
+
 /// The end of a bar that goes on: two slanted white lines across it, and its value at its foot.
 void draw_cut(Svg& svg, double at, double middle) {
   for (const double dx : {-7.0, -3.0}) {
@@ -72,10 +79,7 @@ void draw_bar(Svg& svg, const Panel& panel, const Bar& bar, double middle) {
       svg.marker({panel.x.at(std::max(bar.values[i], 0.0)), middle + shift}, {MarkerShape::circle, black, 3.6, true});
     }
   }
-  const auto beyond = std::count_if(bar.values.begin(), bar.values.end(), [&](double v) { return v > limit; });
-  const std::string more = beyond > 0 ? fmt::format(", {} beyond", beyond) : "";
-  svg.text({panel.box.right() + 8, middle + 4}, fmt::format("{:.{}f}{}", bar.mean, bar.mean < 10 ? 2 : 1, more),
-           {.size = text_size});
+  svg.text({panel.box.right() + 8, middle + 4}, figures_of(bar, limit), {.size = text_size});
 }
 
 }  // namespace
@@ -117,7 +121,9 @@ double draw_errors(Svg& svg, const Material& material, double top) {
     across.high = across.padded(0.03, 1).high;
     const double height = row_height * static_cast<double>(bars.size()) + 8;
     const double left = std::min(names + 24, 0.4 * page_width);
-    Panel panel({left, top + room_above + 6, page_width - left - 130, height}, across, {0, 1, false},
+    double figures = text_width("mean", text_size);
+    for (const Bar& bar : bars) figures = std::max(figures, text_width(figures_of(bar, across.high), text_size));
+    Panel panel({left, top + room_above + 6, page_width - left - figures - 20, height}, across, {0, 1, false},
                 title_of(material.measures[m]), "");
     panel.values_up = false;
     panel.draw_ground(svg);

@@ -1,7 +1,10 @@
 #include "lfdtools/plot/panel.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "lfdtools/plot/palette.hpp"
 
@@ -12,6 +15,21 @@ constexpr double tick_length = 4;
 constexpr double tick_text = 10;
 constexpr double label_text = 11.5;
 constexpr double room_of_tick_up = 22;  // between two ticks of the vertical axis
+
+/// Ticks whose texts are the values over the axis' power of ten.
+std::vector<Tick> ticks_of(const Range& range, int most) {
+  const double unit = std::pow(10.0, exponent_of(range));
+  std::vector<Tick> ticks = nice_ticks({range.low / unit, range.high / unit, false}, most);
+  for (Tick& tick : ticks) tick.value *= unit;
+  return ticks;
+}
+
+/// The label with the power of ten, if there is one.
+std::string scaled_label(const Axis& axis) {
+  const int exponent = exponent_of(axis.range);
+  if (exponent == 0 || axis.label.empty()) return axis.label;
+  return fmt::format("{}  (\u00d7 10^{}{})", axis.label, exponent < 0 ? "\u2212" : "", std::abs(exponent));
+}
 
 }  // namespace
 
@@ -30,18 +48,25 @@ std::vector<Point> Panel::line(const Eigen::Ref<const Vector>& across, const Eig
 std::vector<Tick> Panel::ticks_across() const {
   // As many as their own texts leave room for.
   for (int most = integers ? 25 : 10; most > 2; --most) {
-    std::vector<Tick> ticks = nice_ticks(x.range, most);
+    std::vector<Tick> ticks = ticks_of(x.range, most);
     if (integers) std::erase_if(ticks, [](const Tick& tick) { return tick.value != std::round(tick.value); });
     double widest = 0;
     for (const Tick& tick : ticks) widest = std::max(widest, text_width(tick.text, tick_text));
     if (static_cast<double>(ticks.size()) * (widest + 9) <= box.width && ticks.size() > 1) return ticks;
   }
-  return nice_ticks(x.range, 2);
+  // Too narrow for two texts at round steps: finer ticks, every second one with a text.
+  std::vector<Tick> ticks = ticks_of(x.range, 5);
+  if (ticks.size() < 2) return ticks;
+  const double step = ticks[1].value - ticks[0].value;
+  for (Tick& tick : ticks) {
+    if (std::fmod(std::round(tick.value / step), 2) != 0) tick.text.clear();
+  }
+  return ticks;
 }
 
 std::vector<Tick> Panel::ticks_up() const {
   if (!values_up) return {};
-  return nice_ticks(y.range, std::clamp(static_cast<int>(box.height / room_of_tick_up), 2, 8));
+  return ticks_of(y.range, std::clamp(static_cast<int>(box.height / room_of_tick_up), 2, 8));
 }
 
 void Panel::draw_ground(Svg& svg) const {
@@ -69,9 +94,10 @@ void Panel::draw_frame(Svg& svg) const {
     widest = std::max(widest, text_width(tick.text, tick_text));
   }
   if (texts_below) {
-    svg.text({box.left + box.width / 2, box.bottom() + 30}, x.label, {.size = label_text, .anchor = Anchor::middle});
+    svg.text({box.left + box.width / 2, box.bottom() + 30}, scaled_label(x),
+             {.size = label_text, .anchor = Anchor::middle});
   }
-  svg.text({std::max(box.left - 14 - widest, box.left - room_left + 11), box.top + box.height / 2}, y.label,
+  svg.text({std::max(box.left - 14 - widest, box.left - room_left + 11), box.top + box.height / 2}, scaled_label(y),
            {.size = label_text, .anchor = Anchor::middle, .upwards = true});
 }
 

@@ -44,7 +44,8 @@ double distance(const Point& a, const Point& b) {
 }
 
 bool overlap(const Box& a, const Box& b) {
-  return a.left < b.right() && b.left < a.right() && a.top < b.bottom() && b.top < a.bottom();
+  constexpr double apart = 3;  // names side by side stay two
+  return a.left < b.right() + apart && b.left < a.right() + apart && a.top < b.bottom() && b.top < a.bottom();
 }
 
 /// What a solid spans along one coordinate; of one that is too long for the figure, its middle.
@@ -127,6 +128,7 @@ void draw_names(Svg& svg, const Material& material, const Panel& panel, const Pl
     }
   }
   std::vector<Box> taken;
+  taken.reserve(2 * clusters.size());
   for (const Cluster& cluster : clusters) taken.push_back({cluster.at.x - 4, cluster.at.y - 4, 8, 8});
   for (const Cluster& cluster : clusters) {
     const double width = text_width(cluster.names, name_size);

@@ -76,10 +76,11 @@ std::string escaped(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = utf8_sequence(text, i);
     const char c = text[i];
-    if (length == 0 || (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n')) {
+    const std::string_view character = text.substr(i, length);
+    const bool control = static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n';
+    // U+FFFE and U+FFFF are no characters of XML.
+    if (length == 0 || control || character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") {
       out += replacement;
-    } else if (length == 3 && (text.substr(i, 3) == "\xEF\xBF\xBE" || text.substr(i, 3) == "\xEF\xBF\xBF")) {
-      out += replacement;  // U+FFFE and U+FFFF are no characters of XML
     } else if (c == '&') {
       out += "&amp;";
     } else if (c == '<') {
@@ -91,7 +92,7 @@ std::string escaped(std::string_view text) {
     } else if (c == '\'') {
       out += "&#39;";
     } else {
-      out += text.substr(i, length);
+      out += character;
     }
     i += std::max<std::size_t>(length, 1);
   }

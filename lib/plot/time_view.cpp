@@ -34,23 +34,43 @@ std::vector<Point> ellipse(const Gmm& mixture, Eigen::Index component, Eigen::In
   return points;
 }
 
-void draw_band(Svg& svg, const Panel& panel, const Curve& curve, Eigen::Index signal, const std::string& color) {
+/// Whether the times are those of a clock, such as seconds since 1970: too far from zero for ticks.
+bool of_a_clock(const Material& material) {
+  constexpr double far = 1e4;  // durations
+  double latest = 0;
+  double longest = 0;
+  for (const Curve& curve : material.curves) {
+    latest = std::max(latest, curve.trajectory.times.cwiseAbs().maxCoeff());
+    longest = std::max(longest, curve.trajectory.duration());
+  }
+  return longest > 0 && latest > far * longest && material.mixtures.empty();
+}
+
+/// Times as they are drawn: of a clock, each curve's from its first sample on.
+Vector drawn_times(const Curve& curve, bool clock) {
+  const Vector& times = curve.trajectory.times;
+  return clock ? Vector(times.array() - times[0]) : times;
+}
+
+void draw_band(Svg& svg, const Panel& panel, const Curve& curve, const Vector& times, Eigen::Index signal,
+               const std::string& color) {
   const Vector mean = curve.trajectory.positions.col(signal);
   const Vector half = band_sds * curve.sd.col(signal);
-  std::vector<Point> outline = simplified(panel.line(curve.trajectory.times, mean + half));
-  std::vector<Point> below = simplified(panel.line(curve.trajectory.times, mean - half));
+  std::vector<Point> outline = simplified(panel.line(times, mean + half));
+  std::vector<Point> below = simplified(panel.line(times, mean - half));
   outline.insert(outline.end(), below.rbegin(), below.rend());
   svg.polygon(outline, color, band_opacity, {"", 0, "", 1});
 }
 
-void draw_signal(Svg& svg, const Material& material, const CurveStyle& style, Eigen::Index signal, const Panel& panel) {
+void draw_signal(Svg& svg, const Material& material, const CurveStyle& style, Eigen::Index signal, bool clock,
+                 const Panel& panel) {
   panel.draw_ground(svg);
   svg.begin_clip(panel.box);
   for (const Curve& curve : material.curves) {
-    if (curve.sd.size() > 0) draw_band(svg, panel, curve, signal, style.stroke(curve).color);
+    if (curve.sd.size() > 0) draw_band(svg, panel, curve, drawn_times(curve, clock), signal, style.stroke(curve).color);
   }
   for (const Curve& curve : material.curves) {
-    const std::vector<Point> line = panel.line(curve.trajectory.times, curve.trajectory.positions.col(signal));
+    const std::vector<Point> line = panel.line(drawn_times(curve, clock), curve.trajectory.positions.col(signal));
     const Stroke stroke = style.stroke(curve);
     if (style.cased(curve)) svg.polyline(line, {"#ffffff", stroke.width + 1.4, stroke.dash, 0.8});
     svg.polyline(line, stroke);
@@ -70,10 +90,11 @@ void draw_signal(Svg& svg, const Material& material, const CurveStyle& style, Ei
 
 double draw_times(Svg& svg, const Material& material, const CurveStyle& style, double top) {
   const auto D = static_cast<int>(material.signals.size());
+  const bool clock = of_a_clock(material);
   Range times;
   std::vector<Range> ranges(material.signals.size());
   for (const Curve& curve : material.curves) {
-    times.include(curve.trajectory.times);
+    times.include(drawn_times(curve, clock));
     for (std::size_t d = 0; d < ranges.size(); ++d) {
       const Vector values = curve.trajectory.positions.col(static_cast<Eigen::Index>(d));
       ranges[d].include(values);
@@ -101,9 +122,9 @@ double draw_times(Svg& svg, const Material& material, const CurveStyle& style, d
     const double upper = top + d / columns * (room_above + height + room_below) + room_above;
     const std::string& name = material.signals[static_cast<std::size_t>(d)];
     const Panel panel({left, upper, width, height}, times.padded(0.02, 0.1),
-                      ranges[static_cast<std::size_t>(d)].padded(0.06, 0.02), "time [s]",
-                      with_unit(name, unit_of(name)));
-    draw_signal(svg, material, style, d, panel);
+                      ranges[static_cast<std::size_t>(d)].padded(0.06, 0.02),
+                      clock ? "time from the first sample [s]" : "time [s]", with_unit(name, unit_of(name)));
+    draw_signal(svg, material, style, d, clock, panel);
   }
   return top + (D + columns - 1) / columns * (room_above + height + room_below);
 }

@@ -32,6 +32,10 @@ struct Tick {
   std::string text;  ///< with U+2212 for minus
 };
 
+/// The power of ten, a multiple of 3, by which the values of an axis are divided for its texts: 0 unless all are small,
+/// under 0.002, or some large, from 10^6 on.
+[[nodiscard]] int exponent_of(const Range& range);
+
 /// Ticks inside the range at multiples of 1, 2 or 5 times a power of ten, at most `most` (at least 2) of them; all with
 /// the same number of decimals.
 [[nodiscard]] std::vector<Tick> nice_ticks(const Range& range, int most);
