@@ -140,7 +140,7 @@ void draw_names(Svg& svg, const Material& material, const Panel& panel, const Pl
                           box.top > panel.box.top + 2 && box.bottom() < panel.box.bottom() - 2;
       const Point middle{box.left + box.width / 2, box.top + box.height / 2};
       const bool beside_another = std::any_of(clusters.begin(), clusters.end(), [&](const Cluster& other) {
-        return distance(middle, other.at) < distance(middle, cluster.at);
+        return &other != &cluster && distance(middle, other.at) < 1.4 * distance(middle, cluster.at);
       });
       const bool covered = std::any_of(taken.begin(), taken.end(), [&](const Box& b) { return overlap(b, box); });
       if (!inside || beside_another || covered) continue;

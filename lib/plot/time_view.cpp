@@ -119,14 +119,16 @@ double draw_times(Svg& svg, const Material& material, const CurveStyle& style, d
   const double height = D <= 2 ? 220 : 160;
   for (int d = 0; d < D; ++d) {
     const double left = d % columns * (width + room_left + room_right) + room_left;
-    const double upper = top + d / columns * (room_above + height + room_below) + room_above;
+    const int row = d / columns;
+    const double upper = top + row * (room_above + height + room_below) + room_above;
     const std::string& name = material.signals[static_cast<std::size_t>(d)];
     const Panel panel({left, upper, width, height}, times.padded(0.02, 0.1),
                       ranges[static_cast<std::size_t>(d)].padded(0.06, 0.02),
                       clock ? "time from the first sample [s]" : "time [s]", with_unit(name, unit_of(name)));
     draw_signal(svg, material, style, d, clock, panel);
   }
-  return top + (D + columns - 1) / columns * (room_above + height + room_below);
+  const int rows = (D + columns - 1) / columns;
+  return top + rows * (room_above + height + room_below);
 }
 
 double draw_motion_legend(Svg& svg, const Material& material, const CurveStyle& style, bool planes, bool times,
