@@ -220,8 +220,9 @@ Dmp fit_dmp(const Trajectory& trajectory, const DmpFitOptions& options) {
   const Eigen::Index T = trajectory.samples();
   const Eigen::Index D = trajectory.dimensions();
   if (T < 3) throw DataError("dmp.too_few_samples", fmt::format("{} samples, but a fit needs 3", T));
-  if (options.bases > T) {
-    throw DataError("dmp.more_bases_than_samples", fmt::format("{} basis functions, but {} samples", options.bases, T));
+  const Eigen::Index bases = options.settings ? options.settings->bases() : options.bases;
+  if (bases > T) {
+    throw DataError("dmp.more_bases_than_samples", fmt::format("{} basis functions, but {} samples", bases, T));
   }
   if (!(options.hold_weight >= 0) || !std::isfinite(options.hold_weight)) {
     throw UsageError("dmp.hold_weight",
@@ -231,9 +232,12 @@ Dmp fit_dmp(const Trajectory& trajectory, const DmpFitOptions& options) {
   check_end(options.goal, D, "goal");
   check_sd(options.sd, trajectory);
 
-  Problem p{
-      trajectory, make_dmp_settings(options.bases, options.scaling, options.alpha_z, options.beta_z, options.alpha_x),
-      trajectory.duration(), options.start.value_or(trajectory.start()), options.goal.value_or(trajectory.goal())};
+  Problem p{trajectory,
+            options.settings
+                ? *options.settings
+                : make_dmp_settings(options.bases, options.scaling, options.alpha_z, options.beta_z, options.alpha_x),
+            trajectory.duration(), options.start.value_or(trajectory.start()),
+            options.goal.value_or(trajectory.goal())};
   p.demo.times.array() -= trajectory.times[0];
 
   Weights fitted;

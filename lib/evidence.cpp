@@ -41,7 +41,7 @@ void remove_span(Matrix H, Matrix& Z) {
 }
 
 /// Lower Cholesky factor in place of the lower triangle. False if the matrix is not numerically positive definite.
-bool factorize(Matrix& A) {
+bool cholesky_in_place(Matrix& A) {
   const Eigen::LLT<Eigen::Ref<Matrix>> llt(A);
   return llt.info() == Eigen::Success && A.diagonal().allFinite() && (A.diagonal().array() > 0).all();
 }
@@ -99,87 +99,104 @@ Matrix mean_basis(MeanType mean, const Eigen::Ref<const Matrix>& X) {
 
 Evidence::Evidence(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& Y, const Kernel& kernel,
                    const EvidenceSettings& settings)
+    : Evidence(X, std::vector<OutputBlock>{{Y, settings.psi, settings.nu}}, kernel, settings) {}
+
+Evidence::Evidence(const Eigen::Ref<const Matrix>& X, const std::vector<OutputBlock>& blocks, const Kernel& kernel,
+                   const EvidenceSettings& settings)
     : kernel_(kernel),
       kernel_matrix_(X, kernel),
       row_noise_(settings.row_noise.size() > 0 ? settings.row_noise : Vector::Ones(X.rows())),
       H_(mean_basis(settings.mean, X)),
       kernel_size_(log_hyperparameters(kernel).size()),
       n_(X.rows()),
-      d_(Y.cols()),
       integrated_(settings.omega == OmegaRule::integrated) {
   refuse_undetermined_mean(settings.mean, H_);
-  if (!integrated_ && n_ - H_.cols() <= d_) {
+  for (const auto& outputs : blocks) blocks_.push_back(turned(outputs));
+}
+
+Evidence::Block Evidence::turned(const OutputBlock& outputs) {
+  const Eigen::Index d_outputs = outputs.Y.cols();
+  if (!integrated_ && n_ - H_.cols() <= d_outputs) {
     throw DataError("mvgp.omega_unbounded",
                     "a free Omega needs more rows than outputs: the likelihood grows without bound as the empty "
                     "directions of Omega shrink; use the integrated Omega");
   }
-
   const double n = static_cast<double>(n_);
-  const double d = static_cast<double>(d_);
-  const Matrix psi = settings.psi.size() == 1 ? Matrix(Matrix::Identity(d_, d_) * settings.psi(0, 0)) : settings.psi;
+  const double d = static_cast<double>(d_outputs);
+  const Matrix psi =
+      outputs.psi.size() == 1 ? Matrix(Matrix::Identity(d_outputs, d_outputs) * outputs.psi(0, 0)) : outputs.psi;
   const Matrix L_psi = cholesky(psi);
   const double log_psi = log_determinant_from_cholesky(L_psi);
+  Block block{{}, d, integrated_ ? n + outputs.nu : n, {}, {}};
   if (integrated_) {
-    weight_ = n + settings.nu;
-    constant_ = n * d / 2 * std::log(std::numbers::pi) + n / 2 * log_psi - log_multivariate_gamma(d_, weight_ / 2) +
-                log_multivariate_gamma(d_, settings.nu / 2);
+    constant_ += n * d / 2 * std::log(std::numbers::pi) + n / 2 * log_psi -
+                 log_multivariate_gamma(d_outputs, block.weight / 2) +
+                 log_multivariate_gamma(d_outputs, outputs.nu / 2);
   } else {
-    weight_ = n;
-    constant_ = n * d / 2 * (log_2pi + 1 - std::log(n)) + n / 2 * log_psi;
+    constant_ += n * d / 2 * (log_2pi + 1 - std::log(n)) + n / 2 * log_psi;
   }
 
   // Y Psi^-1/2, and for n < d a factor of n columns with the same Gram matrix: Y^T = Q R P^T gives P R^T.
-  Y_ = L_psi.triangularView<Eigen::Lower>().solve(Y.transpose()).transpose();
-  if (n_ < d_) {
-    const Eigen::ColPivHouseholderQR<Matrix> qr(Y_.transpose());
-    Y_ = qr.colsPermutation() * Matrix(qr.matrixQR().topRows(n_).triangularView<Eigen::Upper>()).transpose();
+  block.Y = L_psi.triangularView<Eigen::Lower>().solve(outputs.Y.transpose()).transpose();
+  if (n_ < d_outputs) {
+    const Eigen::ColPivHouseholderQR<Matrix> qr(block.Y.transpose());
+    block.Y = qr.colsPermutation() * Matrix(qr.matrixQR().topRows(n_).triangularView<Eigen::Upper>()).transpose();
   }
   if (!integrated_) {
-    Matrix rest = Y_;
+    Matrix rest = block.Y;
     remove_span(H_, rest);
-    if (Eigen::ColPivHouseholderQR<Matrix>(rest).rank() < d_) {
+    if (Eigen::ColPivHouseholderQR<Matrix>(rest).rank() < d_outputs) {
       throw DataError("mvgp.omega_unbounded",
                       "a free Omega needs linearly independent outputs: the likelihood grows without bound as the "
                       "empty directions of Omega shrink; use the integrated Omega");
     }
   }
+  return block;
 }
 
-bool Evidence::solve(const Vector& theta) {
+bool Evidence::factorize(const Vector& theta) {
   if (!theta.allFinite()) return false;
   kernel_matrix_.evaluate(with_log_hyperparameters(kernel_, theta.head(kernel_size_)), K_);
   K_.diagonal() += std::exp(theta(kernel_size_)) * row_noise_;
-  if (!factorize(K_)) return false;
-
-  Z_ = Y_;
-  K_.triangularView<Eigen::Lower>().solveInPlace(Z_);
-  if (H_.cols() > 0) {
-    // L^-1 (Y - H beta) at the generalised least squares beta is what is left of L^-1 Y outside the span of L^-1 H.
-    remove_span(K_.triangularView<Eigen::Lower>().solve(H_), Z_);
-  }
-  return Z_.allFinite();
+  return cholesky_in_place(K_);
 }
 
 double Evidence::operator()(const Vector& theta, Vector* gradient) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (!solve(theta)) return infinity;
-  const double d = static_cast<double>(d_);
-  const Eigen::Index r = Z_.cols();
-  S_.setZero(r, r);
-  S_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.transpose());
-  if (integrated_) S_.diagonal().array() += 1.0;
-  if (!factorize(S_)) return infinity;
-  const double value = constant_ + d * K_.diagonal().array().log().sum() + weight_ * S_.diagonal().array().log().sum();
+  if (!factorize(theta)) return infinity;
+  const double half_log_K = K_.diagonal().array().log().sum();
+  Matrix H;
+  if (H_.cols() > 0) H = K_.triangularView<Eigen::Lower>().solve(H_);
+  double value = constant_;
+  double d = 0;
+  for (auto& block : blocks_) {
+    auto& [Y, outputs, weight, Z, S] = block;
+    Z = Y;
+    K_.triangularView<Eigen::Lower>().solveInPlace(Z);
+    // L^-1 (Y - H beta) at the generalised least squares beta is what is left of L^-1 Y outside the span of L^-1 H.
+    if (H.cols() > 0) remove_span(H, Z);
+    if (!Z.allFinite()) return infinity;
+    S.setZero(Z.cols(), Z.cols());
+    S.selfadjointView<Eigen::Lower>().rankUpdate(Z.transpose());
+    if (integrated_) S.diagonal().array() += 1.0;
+    if (!cholesky_in_place(S)) return infinity;
+    value += outputs * half_log_K + weight * S.diagonal().array().log().sum();
+    d += outputs;
+  }
   if (!std::isfinite(value)) return infinity;
   if (gradient == nullptr) return value;
 
   // dvalue/dK' = d/2 K'^-1 - weight/2 B B^T with B B^T = K'^-1 R (I + S)^-1 R^T K'^-1, symmetric.
-  S_.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Z_);
-  K_.transpose().triangularView<Eigen::Upper>().solveInPlace(Z_);
+  for (auto& block : blocks_) {
+    block.S.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(block.Z);
+    K_.transpose().triangularView<Eigen::Upper>().solveInPlace(block.Z);
+  }
   invert_lower(K_);
   multiply_transposed_by_itself(K_);
   K_.triangularView<Eigen::Lower>() *= d / 2;
-  K_.selfadjointView<Eigen::Lower>().rankUpdate(Z_, -weight_ / 2);
+  for (const auto& block : blocks_) {
+    K_.selfadjointView<Eigen::Lower>().rankUpdate(block.Z, -block.weight / 2);
+  }
   gradient->resize(size());
   kernel_matrix_.gradient(K_, gradient->head(kernel_size_));
   (*gradient)(kernel_size_) = std::exp(theta(kernel_size_)) * K_.diagonal().dot(row_noise_);

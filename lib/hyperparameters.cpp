@@ -28,7 +28,7 @@ struct Hyperparameter {
   LogNormalPrior prior;
 
   [[nodiscard]] double lower() const {
-    return log_unit + std::log(role == Role::length_scale ? 1e-3 : role == Role::variance ? 1e-6 : 1e-8);
+    return log_unit + std::log(role == Role::length_scale ? 1e-3 : role == Role::variance ? 1e-12 : 1e-14);
   }
   [[nodiscard]] double upper() const {
     return log_unit + std::log(role == Role::length_scale ? 1e3 : role == Role::variance ? 1e4 : 1e2);
@@ -150,8 +150,9 @@ std::vector<Eigen::Index> random_subset(Eigen::Index n, Eigen::Index count, std:
 
 }  // namespace
 
-Vector hyperparameters_of_maximum_evidence(const Matrix& X, const Matrix& Y, const Kernel& kernel,
-                                           const EvidenceSettings& settings, const MvgpOptions& options) {
+Vector hyperparameters_of_maximum_evidence(const Matrix& X, const std::vector<OutputBlock>& blocks,
+                                           const Kernel& kernel, const EvidenceSettings& settings,
+                                           const MvgpOptions& options) {
   const auto all = hyperparameters(kernel, X, options);
   const Problem problem(all);
   // An evaluation costs n^3, so with many rows the starts compete on a random part of them, and what wins there is
@@ -163,9 +164,11 @@ Vector hyperparameters_of_maximum_evidence(const Matrix& X, const Matrix& Y, con
     const auto rows = random_subset(X.rows(), m, options.seed);
     EvidenceSettings part = settings;
     if (part.row_noise.size() > 0) part.row_noise = settings.row_noise(rows);
-    stages.emplace_back(X(rows, Eigen::all), Y(rows, Eigen::all), kernel, part);
+    std::vector<OutputBlock> outputs = blocks;
+    for (auto& block : outputs) block.Y = block.Y(rows, Eigen::all).eval();
+    stages.emplace_back(X(rows, Eigen::all), outputs, kernel, part);
   }
-  stages.emplace_back(X, Y, kernel, settings);
+  stages.emplace_back(X, blocks, kernel, settings);
 
   const auto candidates = problem.compete(stages.front(), options);
   const auto refine = [&](BoxMinimum found) {

@@ -76,11 +76,25 @@ Kernel se_ard_kernel(int p) {
   return {{{KernelType::se_ard, 1, inputs, Vector::Ones(p)}}};
 }
 
+namespace {
+
+/// constant + linear + one term of the type an input.
+Kernel kernel_by_input(int p, KernelType type) {
+  Kernel kernel{{{KernelType::constant, 1, {}, {}},
+                 {KernelType::linear, 1, se_ard_kernel(p).terms.front().inputs, Vector::Ones(p)}}};
+  for (int j = 0; j < p; ++j) kernel.terms.push_back({type, 1, {j}, Vector::Ones(1)});
+  return kernel;
+}
+
+}  // namespace
+
+Kernel additive_kernel(int p) {
+  return kernel_by_input(p, KernelType::matern32);
+}
+
 Kernel sum_kernel(int p) {
-  const KernelTerm full = se_ard_kernel(p).terms.front();
-  Kernel kernel{{{KernelType::constant, 1, {}, {}}, {KernelType::linear, 1, full.inputs, Vector::Ones(p)}}};
-  for (int j = 0; p > 1 && j < p; ++j) kernel.terms.push_back({KernelType::se_ard, 1, {j}, Vector::Ones(1)});
-  kernel.terms.push_back(full);
+  Kernel kernel = kernel_by_input(p, KernelType::se_ard);
+  if (p > 1) kernel.terms.push_back(se_ard_kernel(p).terms.front());
   return kernel;
 }
 

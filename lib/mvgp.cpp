@@ -55,14 +55,16 @@ Matrix noisy_covariance(const MvgpModel& model) {
 
 double log_evidence(const MvgpModel& model) {
   check_model(model);
-  EvidenceSettings settings{model.omega_rule, model.mean, model.psi, model.nu, {}};
+  // The residual has zero mean whether the coefficients were known or estimated: those of generalised least squares
+  // are where the evidence of an estimated mean has its value.
+  EvidenceSettings settings{model.omega_rule, MeanType::zero, model.psi, model.nu, {}};
   double sigma2 = model.noise_variance;
   if (model.noise.size() > 0) {  // the evidence takes factors on one noise variance
     sigma2 = 1;
     settings.row_noise = model.noise;
   }
   if (model.omega_rule == OmegaRule::ml) settings.psi = Matrix::Ones(1, 1);
-  Evidence evidence(model.X, model.Y, model.kernel, settings);
+  Evidence evidence(model.X, residual(model), model.kernel, settings);
   Vector theta(evidence.size());
   theta << log_hyperparameters(model.kernel), std::log(sigma2);
   return -evidence(theta);

@@ -62,19 +62,28 @@ Matrix psi_from_data(const Matrix& Y, MeanType mean) {
   return Matrix::Constant(1, 1, std::max(psi, smallest));
 }
 
-/// Fields that follow from data and hyperparameters: coefficients, Omega, evidence.
-void complete(MvgpModel& model) {
+/// Coefficients given for weights, as the model's: for Y = W A.
+Matrix known_coefficients(const Matrix& of_weights, const MvgpModel& model) {
+  const Eigen::Index q = mean_basis(model.mean, model.X).cols();
+  if (of_weights.rows() != q || of_weights.cols() != model.Y.cols() || !of_weights.allFinite()) {
+    throw DataError("mvgp.shape", "the coefficients of a known mean do not fit its type and the weights");
+  }
+  return model.output_transform.size() > 0 ? Matrix(of_weights * model.output_transform) : of_weights;
+}
+
+/// Fields that follow from data and hyperparameters: coefficients unless known, Omega, evidence.
+void complete(MvgpModel& model, bool known) {
   const Matrix L = cholesky(noisy_covariance(model));
   const double n = static_cast<double>(model.Y.rows());
   const Eigen::Index d = model.Y.cols();
   Matrix residual = model.Y;
   const Matrix H = mean_basis(model.mean, model.X);
-  model.coefficients = Matrix(0, d);
-  if (H.cols() > 0) {  // generalised least squares
+  if (!known) model.coefficients = Matrix(0, d);
+  if (!known && H.cols() > 0) {  // generalised least squares
     const Matrix KiH = cholesky_solve(L, H);
     model.coefficients = cholesky_solve(cholesky(H.transpose() * KiH), KiH.transpose() * model.Y);
-    residual -= H * model.coefficients;
   }
+  if (H.cols() > 0) residual -= H * model.coefficients;
   const Matrix Z = L.triangularView<Eigen::Lower>().solve(residual);
   Matrix S = Z.transpose() * Z;
   if (model.omega_rule == OmegaRule::ml) {
@@ -96,40 +105,64 @@ MvgpOptions paper_mvgp_options(int p) {
 
 MvgpOptions default_mvgp_options(int p) {
   MvgpOptions options;
-  options.kernel = sum_kernel(p);
+  options.kernel = additive_kernel(p);
   options.length_scale = {1.0, 1.0};
   options.variance = {0.3, 2.0};
   options.noise = {0.03, 2.0};
   return options;
 }
 
+std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::vector<Matrix>& W, const Matrix& A,
+                                  const MvgpOptions& options, const std::vector<Matrix>& coefficients) {
+  std::vector<MvgpModel> models;
+  std::vector<OutputBlock> blocks;
+  // A mean known beforehand leaves a residual with zero mean.
+  const bool known = !coefficients.empty() || options.coefficients.size() > 0;
+  const MeanType estimated = known ? MeanType::zero : options.mean;
+  for (std::size_t g = 0; g < W.size(); ++g) {
+    check_arguments(X, W[g], A, options);
+    MvgpModel model;
+    model.X = X;
+    model.Y = A.size() > 0 ? Matrix(W[g] * A) : W[g];
+    model.output_transform = A;
+    model.kernel = options.kernel.terms.empty() ? additive_kernel(static_cast<int>(X.cols())) : options.kernel;
+    check_kernel(model.kernel, static_cast<int>(X.cols()));
+    model.mean = options.mean;
+    if (known)
+      model.coefficients = known_coefficients(coefficients.empty() ? options.coefficients : coefficients[g], model);
+    model.omega_rule = options.omega;
+    model.noise_variance = options.noise_variance;
+    const Matrix residual = known ? Matrix(model.Y - mean_basis(model.mean, model.X) * model.coefficients) : model.Y;
+    const Matrix psi = options.psi.size() > 0 ? options.psi : psi_from_data(residual, estimated);
+    if (options.omega == OmegaRule::integrated) {
+      model.psi = psi;
+      model.nu = options.nu > 0 ? options.nu : static_cast<double>(model.Y.cols()) + 2;
+    }
+    blocks.push_back({residual, psi, model.nu});
+    models.push_back(std::move(model));
+  }
+  if (models.empty()) throw DataError("mvgp.no_rows", "there are no outputs to train on");
+  if (options.optimise) {
+    Kernel kernel = models.front().kernel;
+    scale_linear_terms(kernel, models.front().X);
+    const EvidenceSettings settings{options.omega, estimated, {}, 0, options.row_noise};
+    const Vector theta = hyperparameters_of_maximum_evidence(models.front().X, blocks, kernel, settings, options);
+    kernel = with_log_hyperparameters(kernel, theta.head(theta.size() - 1));
+    for (auto& model : models) {
+      model.kernel = kernel;
+      model.noise_variance = std::exp(theta(theta.size() - 1));
+    }
+  }
+  for (auto& model : models) {
+    if (options.row_noise.size() > 0) model.noise = model.noise_variance * options.row_noise;
+    complete(model, known);
+  }
+  return models;
+}
+
 MvgpModel train_mvgp(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& W, const Matrix& A,
                      const MvgpOptions& options) {
-  check_arguments(X, W, A, options);
-  MvgpModel model;
-  model.X = X;
-  model.Y = A.size() > 0 ? Matrix(W * A) : Matrix(W);
-  model.output_transform = A;
-  model.kernel = options.kernel.terms.empty() ? sum_kernel(static_cast<int>(X.cols())) : options.kernel;
-  check_kernel(model.kernel, static_cast<int>(X.cols()));
-  model.mean = options.mean;
-  model.omega_rule = options.omega;
-  model.noise_variance = options.noise_variance;
-  if (options.omega == OmegaRule::integrated) {
-    model.psi = options.psi.size() > 0 ? options.psi : psi_from_data(model.Y, options.mean);
-    model.nu = options.nu > 0 ? options.nu : static_cast<double>(W.cols()) + 2;
-  }
-  if (options.optimise) {
-    scale_linear_terms(model.kernel, model.X);
-    const Matrix psi = model.psi.size() > 0 ? model.psi : psi_from_data(model.Y, options.mean);
-    const EvidenceSettings settings{options.omega, options.mean, psi, model.nu, options.row_noise};
-    const Vector theta = hyperparameters_of_maximum_evidence(model.X, model.Y, model.kernel, settings, options);
-    model.kernel = with_log_hyperparameters(model.kernel, theta.head(theta.size() - 1));
-    model.noise_variance = std::exp(theta(theta.size() - 1));
-  }
-  if (options.row_noise.size() > 0) model.noise = model.noise_variance * options.row_noise;
-  complete(model);
-  return model;
+  return train_mvgp(X, std::vector<Matrix>{W}, A, options).front();
 }
 
 }  // namespace lfd

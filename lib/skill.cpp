@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/error.hpp"
 
 namespace lfd {
@@ -30,9 +31,7 @@ void check_rows(const std::vector<std::string>& columns, const std::vector<Skill
                           describe(row.labels) + " differs from " + describe(rows.front().labels) + ")");
     }
   }
-  const Matrix X = changes(rows);
-  const Eigen::RowVectorXd first_row = X.row(0);
-  if ((X.rowwise() - first_row).rowwise().norm().maxCoeff() < 1e-6) {
+  if (!is_trainable(rows)) {
     throw DataError("skill.one_target", "every primitive has the same goal - start: nothing to generalise from");
   }
 }
@@ -56,17 +55,63 @@ MvgpOptions process_options(const SkillOptions& options, int p) {
   MvgpOptions process = options.paper ? paper_mvgp_options(p) : default_mvgp_options(p);
   if (options.kernel == SkillKernel::sum) {
     process.kernel = sum_kernel(p);
+  } else if (options.kernel == SkillKernel::additive) {
+    process.kernel = additive_kernel(p);
   } else if (options.kernel != SkillKernel::automatic) {
     process.kernel = se_ard_kernel(p);
     if (options.kernel == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
     if (options.kernel == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
   }
-  if (options.mean) process.mean = *options.mean;
   process.omega = options.omega;
   process.starts = options.starts;
   process.seed = options.seed;
   process.jobs = options.jobs;
   return process;
+}
+
+/// Weights of some signals, n x (N outputs): by signal, then by basis.
+Matrix weights_of(const std::vector<SkillRow>& rows, const std::vector<int>& outputs) {
+  const Eigen::Index N = rows.front().primitive.settings.bases();
+  Matrix W(static_cast<Eigen::Index>(rows.size()), N * static_cast<Eigen::Index>(outputs.size()));
+  for (Eigen::Index i = 0; i < W.rows(); ++i) {
+    for (std::size_t j = 0; j < outputs.size(); ++j) {
+      W.row(i).segment(static_cast<Eigen::Index>(j) * N, N) =
+          rows[static_cast<std::size_t>(i)].primitive.weights.row(outputs[j]);
+    }
+  }
+  return W;
+}
+
+Matrix block_diagonal(const Matrix& block, std::size_t count) {
+  const Eigen::Index N = block.rows();
+  Matrix A = Matrix::Zero(N * static_cast<Eigen::Index>(count), N * static_cast<Eigen::Index>(count));
+  for (Eigen::Index from = 0; from < A.rows(); from += N) A.block(from, from, N, N) = block;
+  return A;
+}
+
+/// The mean function of a model; coefficients (in the space of weights) where they are known beforehand.
+struct KnownMean {
+  MeanType type = MeanType::zero;
+  Matrix coefficients;
+};
+
+KnownMean known_mean(const SkillOptions& options, const DmpSettings& settings, const SkillModel& model) {
+  SkillMean wanted = options.mean;
+  if (wanted == SkillMean::automatic) wanted = options.paper ? SkillMean::zero : SkillMean::line;
+  if (wanted == SkillMean::zero) return {};
+  if (wanted == SkillMean::constant) return {MeanType::constant, {}};
+  if (wanted == SkillMean::linear) return {MeanType::linear, {}};
+  const Eigen::RowVectorXd line = line_weights(settings).transpose();
+  const Eigen::Index N = line.size();
+  const bool constant = settings.scaling == DmpScaling::goal;
+  KnownMean mean{constant ? MeanType::constant : MeanType::linear,
+                 Matrix::Zero(constant ? 1 : 1 + static_cast<Eigen::Index>(model.inputs.size()),
+                              N * static_cast<Eigen::Index>(model.outputs.size()))};
+  for (std::size_t j = 0; j < model.outputs.size(); ++j) {
+    const auto input = std::find(model.inputs.begin(), model.inputs.end(), model.outputs[j]) - model.inputs.begin();
+    mean.coefficients.row(constant ? 0 : 1 + input).segment(static_cast<Eigen::Index>(j) * N, N) = line;
+  }
+  return mean;
 }
 
 /// The line through the durations, with a proper prior: the posterior mean of constant + linear kernel terms is a line,
@@ -118,17 +163,24 @@ Matrix trajectory_metric(const DmpSettings& settings) {
   return upper.transpose();
 }
 
+Vector line_weights(const DmpSettings& settings) {
+  const Vector s = linspace(0, 1, std::max<Eigen::Index>(400, 4 * settings.bases()));
+  const Vector position = s.array().cube() * (10 + s.array() * (-15 + 6 * s.array()));
+  DmpFitOptions fit;
+  fit.settings = settings;
+  return fit_dmp({s, position}, fit).weights.row(0).transpose();
+}
+
 Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
                   const SkillOptions& options) {
   check_rows(columns, rows);
-  const Dmp& first = rows.front().primitive;
+  const Dmp& any = rows.front().primitive;
   const Eigen::Index n = static_cast<Eigen::Index>(rows.size());
-  const Eigen::Index D = first.dimensions();
-  const Eigen::Index N = first.settings.bases();
+  const Eigen::Index D = any.dimensions();
 
   Skill skill;
   skill.columns = columns;
-  skill.dmp = first.settings;
+  skill.dmp = any.settings;
   skill.start = Vector::Zero(D);
   for (const auto& row : rows) {
     skill.rows.push_back(row.labels);
@@ -144,25 +196,38 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
 
   const Matrix all_changes = changes(rows);
   const Matrix metric = options.paper ? Matrix() : trajectory_metric(skill.dmp);
-  for (auto& model : skill.models) {
-    const Eigen::Index outputs = static_cast<Eigen::Index>(model.outputs.size());
+  const bool shared = !options.paper && skill.models.size() > 1 && skill.models[0].inputs == skill.models[1].inputs;
+  for (std::size_t first = 0; first < skill.models.size(); first += shared ? skill.models.size() : 1) {
+    const std::size_t last = shared ? skill.models.size() : first + 1;
+    const SkillModel& model = skill.models[first];
     Matrix X(n, static_cast<Eigen::Index>(model.inputs.size()));
     for (Eigen::Index j = 0; j < X.cols(); ++j) X.col(j) = all_changes.col(model.inputs[static_cast<std::size_t>(j)]);
-    Matrix W(n, N * outputs);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < outputs; ++j) {
-        W.row(i).segment(j * N, N) =
-            rows[static_cast<std::size_t>(i)].primitive.weights.row(model.outputs[static_cast<std::size_t>(j)]);
-      }
+    MvgpOptions process = process_options(options, static_cast<int>(X.cols()));
+    std::vector<Matrix> weights, coefficients;
+    for (std::size_t m = first; m < last; ++m) {
+      weights.push_back(weights_of(rows, skill.models[m].outputs));
+      KnownMean mean = known_mean(options, skill.dmp, skill.models[m]);
+      process.mean = mean.type;
+      if (mean.coefficients.size() > 0) coefficients.push_back(std::move(mean.coefficients));
     }
-    Matrix A;
-    if (!options.paper) {
-      A = Matrix::Zero(N * outputs, N * outputs);
-      for (Eigen::Index j = 0; j < outputs; ++j) A.block(j * N, j * N, N, N) = metric;
-    }
-    model.process = train_mvgp(X, W, A, process_options(options, static_cast<int>(X.cols())));
+    std::vector<MvgpModel> trained = train_mvgp(
+        X, weights, options.paper ? Matrix() : block_diagonal(metric, model.outputs.size()), process, coefficients);
+    for (std::size_t m = first; m < last; ++m) skill.models[m].process = std::move(trained[m - first]);
   }
   return skill;
+}
+
+bool is_trainable(const std::vector<SkillRow>& rows) {
+  if (rows.size() < 2) return false;
+  const Matrix X = changes(rows);
+  const Eigen::RowVectorXd first = X.row(0);
+  return (X.rowwise() - first).rowwise().norm().maxCoeff() >= 1e-6;
+}
+
+Vector inputs_of(const SkillModel& model, const Vector& change) {
+  Vector x(static_cast<Eigen::Index>(model.inputs.size()));
+  for (Eigen::Index j = 0; j < x.size(); ++j) x[j] = change[model.inputs[static_cast<std::size_t>(j)]];
+  return x;
 }
 
 double region_excess(const Skill& skill, const Vector& change) {
@@ -190,9 +255,7 @@ WeightPrediction SkillPredictor::weights(const Vector& change) const {
   WeightPrediction prediction{Matrix::Zero(D, N), Matrix::Zero(D, N)};
   for (std::size_t m = 0; m < predictors_.size(); ++m) {
     const SkillModel& model = skill_.models[m];
-    Vector x(static_cast<Eigen::Index>(model.inputs.size()));
-    for (Eigen::Index j = 0; j < x.size(); ++j) x[j] = change[model.inputs[static_cast<std::size_t>(j)]];
-    const MvgpPrediction w = predictors_[m].predict(x);
+    const MvgpPrediction w = predictors_[m].predict(inputs_of(model, change));
     const Vector sd = predictors_[m].weight_covariance(w.variance).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (std::size_t j = 0; j < model.outputs.size(); ++j) {
       const Eigen::Index from = static_cast<Eigen::Index>(j) * N;

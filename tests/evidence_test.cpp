@@ -228,3 +228,31 @@ TEST_CASE("generalised least squares coefficients are the best ones") {
     CHECK(Evidence(X, R, kernel, settings)(theta_of(kernel, 0.2)) > best);
   }
 }
+
+TEST_CASE("blocks that share K' add their evidence and its gradient") {
+  const OmegaRule omega = GENERATE(OmegaRule::integrated, OmegaRule::ml);
+  const MeanType mean = GENERATE(MeanType::zero, MeanType::linear);
+  const Matrix X = random_matrix(12, 2, 61);
+  const Kernel kernel = additive_kernel(2);
+  std::vector<OutputBlock> blocks;
+  for (const int d : {3, 5, 1}) {
+    blocks.push_back({random_matrix(12, d, 62 + static_cast<std::uint64_t>(d)), random_positive(d, 70), d + 1.5});
+  }
+  EvidenceSettings settings{omega, mean, {}, 0, {}};
+  Evidence together(X, blocks, kernel, settings);
+  const Vector theta = Vector::LinSpaced(together.size(), -1.0, 0.7);
+  Vector gradient;
+  const double value = together(theta, &gradient);
+  double sum = 0;
+  Vector sum_of_gradients = Vector::Zero(together.size());
+  for (const auto& block : blocks) {
+    settings.psi = block.psi;
+    settings.nu = block.nu;
+    Evidence alone(X, block.Y, kernel, settings);
+    Vector own;
+    sum += alone(theta, &own);
+    sum_of_gradients += own;
+  }
+  CHECK(value == Approx(sum).epsilon(1e-12));
+  CHECK((gradient - sum_of_gradients).norm() < 1e-9 * (1 + gradient.norm()));
+}

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "io_fixture.hpp"
+#include "lfdtools/calibration.hpp"
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/io/skill_file.hpp"
 #include "lfdtools/validation.hpp"
@@ -21,7 +22,10 @@ SkillFile trained(const SkillOptions& options) {
     fit.bases = 6;
     rows.push_back({{std::to_string(rows.size() + 1), "ann", "1", {}}, fit_dmp({phases * (1 + x), path}, fit)});
   }
-  return {{{"x", "y"}, {}, {}}, train_skill({"x", "y"}, rows, options)};
+  SkillFile file{{{"x", "y"}, {}, {}}, train_skill({"x", "y"}, rows, options)};
+  file.skill.calibration = calibrate({"x", "y"}, rows, options);
+  REQUIRE(file.skill.calibration);
+  return file;
 }
 
 std::string text_of(const SkillFile& file, const ScratchFolder& folder) {
@@ -54,7 +58,7 @@ TEST_CASE("a skill that is written and read again predicts the same and writes t
       SkillOptions options;
       options.paper = paper;
       options.structure = structure;
-      if (!paper && structure == SkillStructure::full) options.mean = MeanType::constant;
+      if (!paper && structure == SkillStructure::full) options.mean = SkillMean::constant;
       const SkillFile file = trained(options);
       const std::string text = text_of(file, folder);
       const SkillFile back = read_text(text);
@@ -64,6 +68,9 @@ TEST_CASE("a skill that is written and read again predicts the same and writes t
       CHECK(SkillPredictor(back.skill).weights(change).mean == SkillPredictor(file.skill).weights(change).mean);
       CHECK(back.skill.duration.predict(change) == file.skill.duration.predict(change));
       CHECK(back.skill.rows == file.skill.rows);
+      const Vector phases = linspace(0, 1, 20);
+      CHECK(band(SkillPredictor(back.skill), change, phases, BandKind::path) ==
+            band(SkillPredictor(file.skill), change, phases, BandKind::path));
     }
   }
 }
@@ -83,7 +90,10 @@ TEST_CASE("what does not fit together is refused with its place") {
   refused(R"("outputs":["x"])", R"("outputs":["y"])", "skill.outputs", "/models");
   refused(R"("inputs":["x","y"])", R"("inputs":["x","x"])", "skill.repeated_signal", "/models/0/inputs/1");
   refused(R"("type":"linear")", R"("type":"cubic")", "kernel.unknown_type", "/models/0/kernel/terms/1/type");
-  refused(R"("type":"zero")", R"("type":"constant")", "json.wrong_length", "/models/0/mean/coefficients");
+  refused(R"("mean":{"type":"linear")", R"("mean":{"type":"constant")", "json.wrong_length",
+          "/models/0/mean/coefficients");
   refused(R"("nu":8)", R"("nu":"8")", "json.not_a_number", "/models/0/nu");
   refused(R"("rows":[{)", R"("rows":[{"colour":1,)", "json.unknown_key", "/rows/0/colour");
+  refused(R"("levels":[0.1)", R"("levels":[0.3)", "skill.levels", "/calibration/levels");
+  refused(R"({"targets":)", R"({"targets":-)", "json.out_of_range", "/calibration/targets");
 }

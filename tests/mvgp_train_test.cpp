@@ -34,9 +34,9 @@ Rows smooth_rows(int n, int p, int d, double noise, std::uint64_t seed, int idle
 /// The documented box of a kernel of se-ard terms.
 bool in_box(const Vector& theta, const Matrix& X, const Kernel& kernel) {
   const Kernel moved = with_log_hyperparameters(kernel, theta.head(theta.size() - 1));
-  bool inside = std::exp(theta(theta.size() - 1)) >= 1e-8 && std::exp(theta(theta.size() - 1)) <= 1e2;
+  bool inside = std::exp(theta(theta.size() - 1)) >= 1e-14 && std::exp(theta(theta.size() - 1)) <= 1e2;
   for (const auto& term : moved.terms) {
-    inside = inside && term.variance >= 1e-6 && term.variance <= 1e4;
+    inside = inside && term.variance >= 1e-12 && term.variance <= 1e4;
     if (term.type != KernelType::se_ard) continue;
     for (std::size_t q = 0; q < term.inputs.size(); ++q) {
       const auto x = X.col(term.inputs[q]);
@@ -254,4 +254,41 @@ TEST_CASE("what cannot be trained is refused by name") {
   ml.omega = OmegaRule::ml;
   CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y, {}, ml); }) == "");
   CHECK(id_of([&] { return train_mvgp(rows.X.topRows(4), rows.Y.topRows(4), {}, ml); }) == "mvgp.omega_unbounded");
+}
+
+TEST_CASE(
+    "groups of outputs with one kernel: one group is the plain training, several lie where their sum is greatest") {
+  const Rows rows = smooth_rows(12, 2, 4, 0.05, 91);
+  MvgpOptions options = default_mvgp_options(2);
+  const MvgpModel plain = train_mvgp(rows.X, rows.Y, {}, options);
+  const auto groups = train_mvgp(rows.X, std::vector<Matrix>{rows.Y, 3 * rows.Y.leftCols(2)}, {}, options);
+  REQUIRE(groups.size() == 2);
+  CHECK(groups[0].noise_variance == groups[1].noise_variance);
+  CHECK(log_hyperparameters(groups[0].kernel) == log_hyperparameters(groups[1].kernel));
+  CHECK(groups[1].Y.cols() == 2);
+  const auto one = train_mvgp(rows.X, std::vector<Matrix>{rows.Y}, {}, options);
+  CHECK(log_hyperparameters(one.front().kernel) == log_hyperparameters(plain.kernel));
+}
+
+TEST_CASE("a mean that is known beforehand leaves its residual to the process") {
+  const Rows rows = smooth_rows(12, 2, 4, 0.05, 91);
+  Matrix A = Matrix::Identity(rows.Y.cols(), rows.Y.cols());
+  A.diagonal().array() += 0.5;
+  MvgpOptions options = default_mvgp_options(2);
+  options.mean = MeanType::linear;
+  options.coefficients = Matrix::Constant(3, rows.Y.cols(), 0.7);
+  const MvgpModel model = train_mvgp(rows.X, rows.Y, A, options);
+  const Matrix M = mean_basis(MeanType::linear, rows.X) * options.coefficients;
+  options.mean = MeanType::zero;
+  const Matrix coefficients = options.coefficients;
+  options.coefficients = {};
+  const MvgpModel rest = train_mvgp(rows.X, rows.Y - M, A, options);
+  CHECK(model.coefficients == coefficients * A);
+  CHECK((log_hyperparameters(model.kernel) - log_hyperparameters(rest.kernel)).norm() < 1e-6);
+  CHECK(model.log_marginal_likelihood == Approx(rest.log_marginal_likelihood).epsilon(1e-9));
+  const Vector x = rows.X.row(1).transpose() * 1.1;
+  const Vector expected =
+      predict(rest, x).mean + (mean_basis(MeanType::linear, x.transpose()) * coefficients).transpose();
+  CHECK((predict(model, x).mean - expected).norm() < 1e-6 * (1 + expected.norm()));
+  CHECK(log_evidence(model) == Approx(model.log_marginal_likelihood).epsilon(1e-12));
 }

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "lfdtools/calibration.hpp"
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/io/dmp_file.hpp"
 #include "lfdtools/io/skill_file.hpp"
@@ -11,7 +12,7 @@ using namespace lfd;
 
 int main(int argc, char** argv) {
   SkillOptions options;
-  MeanType mean = MeanType::zero;
+  bool calibrated = true;
   std::int64_t starts = options.starts;
   cli::Program program("mvgpr-train", "Learn a skill: movement primitives whose weights follow the target.");
   program.reads("DMP JSON of several targets").uses_jobs().uses_seed();
@@ -25,24 +26,30 @@ int main(int argc, char** argv) {
                  "what speaks for what: each axis for itself, all for each axis (Table 1), all for all");
   program.choice("--kernel", options.kernel,
                  {{"auto", SkillKernel::automatic},
+                  {"additive", SkillKernel::additive},
                   {"sum", SkillKernel::sum},
                   {"se-ard", SkillKernel::se_ard},
                   {"matern32", SkillKernel::matern32},
                   {"matern52", SkillKernel::matern52}},
-                 "covariance function; sum (auto, but se-ard with --paper): constant + linear + se-ard an input + "
-                 "se-ard over all");
-  program.choice("--mean", mean,
-                 {{"zero", MeanType::zero}, {"constant", MeanType::constant}, {"linear", MeanType::linear}},
-                 "explicit mean function");
+                 "covariance function; additive (auto, but se-ard with --paper): constant + linear + matern32 an "
+                 "input; sum: constant + linear + se-ard an input + se-ard over all");
+  program.choice("--mean", options.mean,
+                 {{"auto", SkillMean::automatic},
+                  {"zero", SkillMean::zero},
+                  {"constant", SkillMean::constant},
+                  {"linear", SkillMean::linear},
+                  {"line", SkillMean::line}},
+                 "mean function; line (auto, but zero with --paper): the straight minimum-jerk motion");
   program.choice("--omega", options.omega, {{"integrated", OmegaRule::integrated}, {"ml", OmegaRule::ml}},
                  "covariance between weights: integrated out, or free (needs more rows than weights)");
+  program.choice("--calibration", calibrated, {{"targets", true}, {"none", false}},
+                 "scale the bands by what is missed on targets left out in turn, or trust the process");
   program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");
+  program.example("dmp-fit demos.csv | mvgpr-train -o skill.json", "every recording a row, in its own clock");
   program.example("dmp-fit reference.csv | mvgpr-train -o skill.json", "one row a target");
-  program.example("demo-align demos.csv | dmp-fit | mvgpr-train -o skill.json", "every demonstration a row");
   program.example("dmp-fit --paper reference.csv | mvgpr-train --paper --model full",
                   "Table 1 of the paper, literally");
   return program.run(argc, argv, [&](cli::Run& run) {
-    if (program.given("--mean")) options.mean = mean;
     options.starts = static_cast<int>(starts);
     options.seed = run.seed();
     options.jobs = run.jobs();
@@ -65,6 +72,7 @@ int main(int argc, char** argv) {
       rows.push_back({row.header.labels, std::move(row.dmp)});
     }
     file.skill = train_skill(file.header.columns, rows, options);
+    if (calibrated) file.skill.calibration = calibrate(file.header.columns, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     double evidence = 0;
     for (const auto& model : file.skill.models) evidence += model.process.log_marginal_likelihood;

@@ -17,6 +17,7 @@ struct DmpFitOptions {
   double alpha_z = 25;                                ///< damping [1]
   std::optional<double> beta_z;                       ///< alpha_z / 4 if empty [1]
   double alpha_x = CanonicalSystem::default_alpha_x;  ///< decay of the phase [1]
+  std::optional<DmpSettings> settings;                ///< in place of the five above
   std::optional<Vector> start;                        ///< D [m]; the first sample if empty
   std::optional<Vector> goal;                         ///< D [m]; the last sample if empty
   Samples sd;                                         ///< T x D [m], or empty: standard deviation of each sample

@@ -1,6 +1,8 @@
 // Negative log evidence of the multivariate process and its gradient, paper eq. (18), Omega integrated or free.
 #pragma once
 
+#include <vector>
+
 #include "lfdtools/kernel.hpp"
 
 namespace lfd {
@@ -23,6 +25,13 @@ struct EvidenceSettings {
   Vector row_noise;  ///< factor on the noise variance of each row, n, positive; empty: ones
 };
 
+/// Outputs with an Omega of their own.
+struct OutputBlock {
+  Matrix Y;       ///< n x d
+  Matrix psi;     ///< 1 x 1: psi times the identity; or d x d, positive definite [unit of Y squared]
+  double nu = 0;  ///< > d - 1
+};
+
 /// -ln p(Y | X, theta) for Y ~ MN(M, K', Omega), K' = K + sigma_n^2 diag(row_noise), as a function of
 /// theta = (log_hyperparameters of the kernel, ln sigma_n^2). With S = (Y-M)^T K'^-1 (Y-M):
 ///   integrated  nd/2 ln pi + d/2 ln|K'| + (n+nu)/2 ln|Psi+S| - nu/2 ln|Psi| - lnGamma_d((n+nu)/2) + lnGamma_d(nu/2)
@@ -31,6 +40,9 @@ struct EvidenceSettings {
 /// whatever d is. The coefficients of an explicit mean are those of generalised least squares at each K': they make S
 /// smallest in the Loewner order, so they maximise either form, and the gradient needs no derivative of them (envelope
 /// theorem). An object holds its working memory: one a thread.
+///
+/// Several blocks of outputs may share K' and differ in Omega: independent given theta, so their evidence adds up, and
+/// K' is factorised once for all.
 class Evidence {
  public:
   /// @param X  n x p [m]   @param Y  n x d
@@ -39,6 +51,9 @@ class Evidence {
   ///         are linearly dependent
   Evidence(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& Y, const Kernel& kernel,
            const EvidenceSettings& settings);
+  /// The same for several blocks; psi and nu of the settings are not used.
+  Evidence(const Eigen::Ref<const Matrix>& X, const std::vector<OutputBlock>& blocks, const Kernel& kernel,
+           const EvidenceSettings& settings);
 
   [[nodiscard]] Eigen::Index size() const { return kernel_size_ + 1; }
 
@@ -46,17 +61,24 @@ class Evidence {
   double operator()(const Vector& theta, Vector* gradient = nullptr);
 
  private:
-  bool solve(const Vector& theta);  // sets K_ to L, Z_ to L^-1 (Y - M); false: not positive definite
+  struct Block {
+    Matrix Y;       // n x r, r = min(n, d): Y Psi^-1/2 turned
+    double d;       // outputs
+    double weight;  // n + nu or n
+    Matrix Z, S;    // working memory
+  };
+  [[nodiscard]] Block turned(const OutputBlock& outputs);
+  bool factorize(const Vector& theta);  // sets K_ to L; false: not positive definite
 
   Kernel kernel_;
   KernelMatrix kernel_matrix_;
   Vector row_noise_;
-  Matrix Y_;  // n x r, r = min(n, d): Y Psi^-1/2 turned
   Matrix H_;  // n x q, basis of the explicit mean
-  Eigen::Index kernel_size_, n_, d_;
+  Eigen::Index kernel_size_, n_;
   bool integrated_;
-  double weight_, constant_;  // n + nu or n; terms without theta
-  Matrix K_, Z_, S_;          // working memory
+  double constant_ = 0;  // terms without theta
+  std::vector<Block> blocks_;
+  Matrix K_;  // working memory
 };
 
 }  // namespace lfd

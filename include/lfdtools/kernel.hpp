@@ -39,6 +39,9 @@ struct Kernel {
 /// The paper's kernel: one se-ard term over all p inputs, variance and length scales 1.
 [[nodiscard]] Kernel se_ard_kernel(int p);
 
+/// constant + linear + one Matern-3/2 term an input: the axes of dP act each for itself.
+[[nodiscard]] Kernel additive_kernel(int p);
+
 /// constant + linear + one se-ard term an input + one over all inputs (left out when p = 1); variances and length
 /// scales 1.
 [[nodiscard]] Kernel sum_kernel(int p);

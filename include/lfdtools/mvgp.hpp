@@ -34,14 +34,18 @@ struct LogNormalPrior {
 
 struct MvgpOptions {
   /// Terms to use; their length scales and free variances are starting values, found from the data when `optimise` is
-  /// set. No terms: `sum_kernel`.
+  /// set. No terms: `additive_kernel`.
   Kernel kernel;
   double noise_variance = 0.01;  ///< used as it is when `optimise` is not set
   MeanType mean = MeanType::zero;
+  /// Of `mean`, 1 or 1+p rows times d, in the space of weights (before A): known beforehand. Empty: by generalised
+  /// least squares.
+  Matrix coefficients;
   OmegaRule omega = OmegaRule::integrated;
-  /// Psi, 1 x 1 or d x d. Empty: psi times the identity, psi = mean square of Y (about its column means when an
-  /// explicit mean is asked for), at least (1e-9)^2. With nu = d + 2 the prior mean of Omega is Psi, so all kernel and
-  /// noise variances are shares of the data's mean square, and Psi itself needs no optimising.
+  /// Psi, 1 x 1 or d x d. Empty: psi times the identity, psi = mean square of Y - M where M is known beforehand (of Y
+  /// about its column means where an explicit mean is estimated), at least (1e-9)^2. With nu = d + 2 the prior mean of
+  /// Omega is Psi, so all kernel and noise variances are shares of the data's mean square, and Psi itself needs no
+  /// optimising.
   Matrix psi;
   double nu = 0;     ///< 0: d + 2
   Vector row_noise;  ///< factor on the noise variance of each row (0.1: mean of ten demonstrations); empty: ones
@@ -57,12 +61,12 @@ struct MvgpOptions {
 /// The published formulation: se-ard, zero mean, no priors, Omega integrated with Psi = mean square of Y times I.
 [[nodiscard]] MvgpOptions paper_mvgp_options(int p);
 
-/// The default: `sum_kernel`, zero mean (the constant and linear terms are a linear mean with a proper prior), weak
-/// priors on all hyperparameters.
+/// The default: `additive_kernel`, zero mean (the constant and linear terms are a linear mean with a proper prior),
+/// weak priors on all hyperparameters.
 [[nodiscard]] MvgpOptions default_mvgp_options(int p);
 
 /// Hyperparameters at the maximum of evidence (times priors, where given) inside a box: length scales 1e-3 to 1e3 times
-/// the range of their input, variances 1e-6 to 1e4, noise variance 1e-8 to 1e2.
+/// the range of their input, variances 1e-12 to 1e4, noise variance 1e-14 to 1e2.
 /// @param X  n x p, goal - start of each row [m], n >= 1
 /// @param W  n x d, weights
 /// @param A  d x d, invertible: distances of W A are distances of trajectories; empty: the identity
@@ -70,6 +74,14 @@ struct MvgpOptions {
 ///         `Evidence` and `check_kernel`
 [[nodiscard]] MvgpModel train_mvgp(const Eigen::Ref<const Matrix>& X, const Eigen::Ref<const Matrix>& W,
                                    const Matrix& A, const MvgpOptions& options);
+
+/// The same for several groups of outputs, each with an Omega of its own, that share kernel and noise: the
+/// hyperparameters at the maximum of the sum of their evidence.
+/// @param W  groups, n x d each   @param A  of every group
+/// @param coefficients  MvgpOptions::coefficients of each group; empty: of the options
+[[nodiscard]] std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::vector<Matrix>& W,
+                                                const Matrix& A, const MvgpOptions& options,
+                                                const std::vector<Matrix>& coefficients = {});
 
 struct MvgpPrediction {
   Vector mean;              ///< d, weights

@@ -24,17 +24,28 @@ struct SkillRow {
 enum class SkillStructure {
   automatic,  ///< the library's choice: `full`
   axis,       ///< one model an axis from its own component, R -> R^N (Sec. III-C of the paper)
-  full,       ///< one model an axis from all of dP, R^D -> R^N (Table 1 of the paper)
+  full,       ///< one model an axis from all of dP, R^D -> R^N (Table 1 of the paper); but for the paper's process, one
+              ///< kernel for all axes, each with an Omega of its own
   joint       ///< one model for all axes, R^D -> R^(D N)
 };
 
 /// Covariance functions to choose from.
 enum class SkillKernel {
-  automatic,  ///< `sum`; with SkillOptions::paper `se_ard`
+  automatic,  ///< `additive`; with SkillOptions::paper `se_ard`
+  additive,   ///< constant + linear + matern32 an input
   sum,        ///< constant + linear + se-ard an input + se-ard over all inputs
   se_ard,     ///< one term over all inputs, as the others below
   matern32,
   matern52
+};
+
+/// Mean functions of the process.
+enum class SkillMean {
+  automatic,  ///< `line`; with SkillOptions::paper `zero`
+  zero,       ///< the motion of the spring alone
+  constant,
+  linear,
+  line  ///< known beforehand: the weights of the straight minimum-jerk motion, proportional to dP
 };
 
 struct SkillOptions {
@@ -43,7 +54,7 @@ struct SkillOptions {
   /// `axis`.
   bool paper = false;
   SkillKernel kernel = SkillKernel::automatic;
-  std::optional<MeanType> mean;  ///< zero if empty
+  SkillMean mean = SkillMean::automatic;
   OmegaRule omega = OmegaRule::integrated;
   int starts = 5;
   std::uint64_t seed = 1;
@@ -67,6 +78,16 @@ struct DurationModel {
   [[nodiscard]] double predict(const Vector& change) const;
 };
 
+/// What leaving targets out says of a skill's uncertainty (calibration.hpp: `calibrate`).
+struct Calibration {
+  int targets = 0;             ///< left out in turn
+  double target_variance = 0;  ///< of what sets a target apart, relative to Omega as the kernel is
+  Vector reproduction;         ///< D, root mean square distance of the rows' primitives from their recordings [m]
+  Vector levels;               ///< L shares, rising
+  Vector pointwise;            ///< L factors on the sd that hold these shares of samples
+  Vector path;                 ///< L factors that hold whole paths of these shares of targets
+};
+
 struct Skill {
   std::vector<std::string> columns;  ///< D signal names
   DmpSettings dmp;
@@ -75,6 +96,7 @@ struct Skill {
   std::vector<Labels> rows;  ///< n
   DurationModel duration;
   std::vector<SkillModel> models;
+  std::optional<Calibration> calibration;  ///< empty: not calibrated
 };
 
 /// Learns weights as a function of dP from rows that share their settings.
@@ -84,10 +106,20 @@ struct Skill {
 [[nodiscard]] Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
                                 const SkillOptions& options = {});
 
+/// Whether rows can make a skill: at least two, whose dP differ.
+[[nodiscard]] bool is_trainable(const std::vector<SkillRow>& rows);
+
+/// Components of dP that a model sees, p.
+[[nodiscard]] Vector inputs_of(const SkillModel& model, const Vector& change);
+
 /// A, N x N lower triangular, so that the Euclidean distance of rows w A is the root mean square distance [m] over one
 /// duration of the motions that weights w of one axis make (scale 1): A A^T = R^T R / T, with a floor of 1e-6 of the
 /// largest singular value of R so that directions which hardly move the hand keep an inverse.
 [[nodiscard]] Matrix trajectory_metric(const DmpSettings& settings);
+
+/// Weights of the straight minimum-jerk motion from 0 to 1 on one axis, N: a motion by dP has dP times them (scaling
+/// none), or them as they are (scaling goal).
+[[nodiscard]] Vector line_weights(const DmpSettings& settings);
 
 /// The demonstrated region: for each signal the interval that goal - start of the rows spans, widened at both ends by a
 /// tenth of its length and at least 10 mm.
@@ -114,6 +146,8 @@ class SkillPredictor {
   explicit SkillPredictor(Skill skill);
 
   [[nodiscard]] const Skill& skill() const { return skill_; }
+  /// One a model.
+  [[nodiscard]] const std::vector<MvgpPredictor>& processes() const { return predictors_; }
   /// @param change  dP, D [m]
   [[nodiscard]] WeightPrediction weights(const Vector& change) const;
   /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Rows fitted by

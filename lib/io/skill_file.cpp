@@ -172,6 +172,36 @@ void write_model(JsonWriter& json, const SkillModel& model, const std::vector<st
   json.member("log_marginal_likelihood", process.log_marginal_likelihood).end_object();
 }
 
+Calibration read_calibration(const JsonView& view, Eigen::Index D) {
+  view.only({"targets", "target_variance", "reproduction", "levels", "pointwise", "path"});
+  Calibration calibration;
+  calibration.targets = static_cast<int>(view.at("targets").integer(1, 1'000'000));
+  calibration.target_variance = view.at("target_variance").number(0, 1e300);
+  calibration.reproduction = view.at("reproduction").vector(D);
+  const auto L = static_cast<Eigen::Index>(view.at("levels").size());
+  if (L == 0) view.at("levels").fail("skill.shape", "a calibration needs a level");
+  calibration.levels = view.at("levels").vector(L);
+  calibration.pointwise = view.at("pointwise").vector(L);
+  calibration.path = view.at("path").vector(L);
+  double last = 0;
+  for (const double level : calibration.levels) {
+    if (!(level > last && level < 1)) view.at("levels").fail("skill.levels", "levels must rise inside (0, 1)");
+    last = level;
+  }
+  if (calibration.pointwise.minCoeff() < 0 || calibration.path.minCoeff() < 0 ||
+      calibration.reproduction.minCoeff() < 0) {
+    view.fail("skill.calibration", "factors and distances must not be negative");
+  }
+  return calibration;
+}
+
+void write_calibration(JsonWriter& json, const Calibration& calibration) {
+  json.key("calibration").begin_object().member("targets", calibration.targets);
+  json.member("target_variance", calibration.target_variance).member("reproduction", calibration.reproduction);
+  json.member("levels", calibration.levels).member("pointwise", calibration.pointwise);
+  json.member("path", calibration.path).end_object();
+}
+
 }  // namespace
 
 SkillFile read_skill(const JsonDocument& document) {
@@ -179,7 +209,7 @@ SkillFile read_skill(const JsonDocument& document) {
   file.header = read_header(document, skill_format);
   const JsonView root = document.root();
   root.only({"format", "version", "columns", "target", "demo", "teacher", "provenance", "dmp", "start", "start_spread",
-             "rows", "duration", "models"});
+             "rows", "duration", "models", "calibration"});
   Skill& skill = file.skill;
   skill.columns = file.header.columns;
   const auto D = static_cast<Eigen::Index>(skill.columns.size());
@@ -202,6 +232,7 @@ SkillFile read_skill(const JsonDocument& document) {
     duration.at("range").fail("skill.duration", "the range of durations is not positive and rising");
   }
   std::copy_n(range.data(), 2, skill.duration.range);
+  if (const auto calibration = root.find("calibration")) skill.calibration = read_calibration(*calibration, D);
   const JsonView models = root.at("models");
   std::vector<int> given(skill.columns.size(), 0);
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -236,6 +267,7 @@ void write_skill(const SkillFile& file, Output& out) {
   json.end_object().key("models").begin_array();
   for (const auto& model : skill.models) write_model(json, model, skill.columns);
   json.end_array();
+  if (skill.calibration) write_calibration(json, *skill.calibration);
   write_provenance(json, file.header);
   json.write_line(out);
 }

@@ -1,0 +1,54 @@
+// Bands that hold on people: what a process says of its own uncertainty, scaled by what it missed on targets that were
+// left out.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "lfdtools/skill.hpp"
+
+namespace lfd {
+
+/// Variance of the positions of a motion by model and phase.
+struct PositionVariance {
+  Samples unit;   ///< T x D, of a relative variance of 1 [m^2]: diag(s^2 R A^-T Omega A^-1 R^T)
+  Vector latent;  ///< D, relative latent variance k^ of (21) of the process that gives the axis
+  Vector noise;   ///< D, relative noise variance of one demonstration
+
+  /// unit times (latent + extra + noise / repetitions), T x D [m^2]. @param repetitions  infinite: no noise
+  [[nodiscard]] Samples of_mean(double extra, double repetitions) const;
+};
+
+/// @param change  dP, D [m]   @param phases  T, times over the duration
+[[nodiscard]] PositionVariance position_variance(const SkillPredictor& predictor, const Vector& change,
+                                                 const Vector& phases);
+
+/// Which samples a band promises to hold.
+enum class BandKind {
+  pointwise,  ///< a share of all samples, each axis by itself
+  path        ///< the whole path of a share of targets
+};
+
+/// What the intention at a new target may do: half-width of the band about the predicted motion, T x D [m],
+/// factor * sqrt(variance of the intention + target_variance + reproduction^2). Without a calibration the factor is the
+/// quantile of the process's Student-t and the band is only as honest as the process.
+/// @param level        share promised, in (0, 1)
+/// @param repetitions  of the mean path that is to be held: its noise is added; infinite: of the intention itself
+[[nodiscard]] Samples band(const SkillPredictor& predictor, const Vector& change, const Vector& phases, BandKind kind,
+                           double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
+
+/// Leaves every target out in turn, trains on the others as `train_skill` does, and compares what is predicted with the
+/// mean of the target's rows.
+///
+/// target_variance is what sets a target apart from what its neighbours say (rows of one target share it, so that
+/// repeating a target does not average it away), by moments: the mean over targets of
+/// (sum of squared errors) / (sum of unit variances) - latent - noise / rows, at least 0. The factors are quantiles of
+/// |error| / sd: `pointwise` over all samples and axes, `path` over the targets' greatest, with the rank
+/// ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability m / (m + 1)
+/// when that rank is over m.
+/// @return empty with fewer than three targets that differ
+/// @throws those of train_skill
+[[nodiscard]] std::optional<Calibration> calibrate(const std::vector<std::string>& columns,
+                                                   const std::vector<SkillRow>& rows, const SkillOptions& options);
+
+}  // namespace lfd

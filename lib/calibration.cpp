@@ -1,0 +1,198 @@
+#include "lfdtools/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lfdtools/gaussian.hpp"
+#include "lfdtools/parallel.hpp"
+
+namespace lfd {
+namespace {
+
+constexpr Eigen::Index phase_count = 200;
+
+/// Rows of one target and teacher, by position.
+std::vector<std::vector<std::size_t>> by_target(const std::vector<SkillRow>& rows) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto same = [&](const auto& group) {
+      const Labels& a = rows[group.front()].labels;
+      const Labels& b = rows[i].labels;
+      return a.target == b.target && a.teacher == b.teacher;
+    };
+    const auto found = std::find_if(groups.begin(), groups.end(), same);
+    if (found == groups.end()) {
+      groups.push_back({i});
+    } else {
+      found->push_back(i);
+    }
+  }
+  return groups;
+}
+
+std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group) {
+  std::vector<SkillRow> rest;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (std::find(group.begin(), group.end(), i) == group.end()) rest.push_back(rows[i]);
+  }
+  return rest;
+}
+
+/// What was missed on one target.
+struct Miss {
+  Samples error;  // phase_count x D [m]
+  PositionVariance variance;
+  double repetitions = 1;
+};
+
+Miss miss(const SkillPredictor& predictor, const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group,
+          const Matrix& R) {
+  Miss result;
+  result.repetitions = static_cast<double>(group.size());
+  const Dmp& any = rows[group.front()].primitive;
+  Vector change = Vector::Zero(any.dimensions());
+  Matrix force = Matrix::Zero(any.dimensions(), any.settings.bases());  // mean of s w
+  for (const std::size_t i : group) {
+    const Dmp& row = rows[i].primitive;
+    change += rows[i].change() / result.repetitions;
+    force += row.scale().asDiagonal() * row.weights / result.repetitions;
+  }
+  Matrix predicted = predictor.weights(change).mean;
+  if (any.settings.scaling == DmpScaling::goal) predicted = change.asDiagonal() * predicted;
+  // The mean of the free responses is the free response to the mean change, so what differs is the forced part alone.
+  result.error = R * (force - predicted).transpose();
+  result.variance = position_variance(predictor, change, linspace(0, 1, phase_count));
+  return result;
+}
+
+/// Value at a share of the sorted values, between neighbours in proportion.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double position = share * static_cast<double>(sorted.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(position), sorted.size() - 1);
+  const double next = sorted[std::min(i + 1, sorted.size() - 1)];
+  return sorted[i] + (position - static_cast<double>(i)) * (next - sorted[i]);
+}
+
+/// The smallest of the sorted values that holds a new one with the probability asked for, else the largest.
+double conformal_quantile(const std::vector<double>& sorted, double share) {
+  const double rank = std::ceil(share * (static_cast<double>(sorted.size()) + 1) - 1e-9);
+  return sorted[std::min(sorted.size(), static_cast<std::size_t>(std::max(1.0, rank))) - 1];
+}
+
+double effect_of_target(const std::vector<Miss>& misses) {
+  double sum = 0;
+  for (const auto& miss : misses) {
+    const Samples& unit = miss.variance.unit;
+    const double explained = miss.variance.of_mean(0, miss.repetitions).sum();
+    sum += (miss.error.squaredNorm() - explained) / unit.sum();
+  }
+  return std::max(0.0, sum / static_cast<double>(misses.size()));
+}
+
+double factor(const Calibration& calibration, BandKind kind, double level) {
+  const Vector& factors = kind == BandKind::path ? calibration.path : calibration.pointwise;
+  const Vector& levels = calibration.levels;
+  if (level <= levels[0]) return factors[0] * level / levels[0];
+  for (Eigen::Index i = 1; i < levels.size(); ++i) {
+    if (level > levels[i]) continue;
+    const double share = (level - levels[i - 1]) / (levels[i] - levels[i - 1]);
+    return factors[i - 1] + share * (factors[i] - factors[i - 1]);
+  }
+  return factors[factors.size() - 1];
+}
+
+}  // namespace
+
+Samples PositionVariance::of_mean(double extra, double repetitions) const {
+  const Vector relative = (latent + noise / repetitions).array() + extra;
+  return unit * relative.asDiagonal();
+}
+
+PositionVariance position_variance(const SkillPredictor& predictor, const Vector& change, const Vector& phases) {
+  const Skill& skill = predictor.skill();
+  const Eigen::Index D = change.size();
+  const Eigen::Index N = skill.dmp.bases();
+  const Matrix R = response_matrix(skill.dmp, 1.0, phases);
+  PositionVariance result{Samples::Zero(phases.size(), D), Vector::Zero(D), Vector::Zero(D)};
+  for (std::size_t m = 0; m < skill.models.size(); ++m) {
+    const SkillModel& model = skill.models[m];
+    const MvgpPredictor& process = predictor.processes()[m];
+    const double latent = process.predict(inputs_of(model, change)).variance;
+    const Matrix covariance = process.weight_covariance(1);
+    const double noise = model.process.noise.size() > 0 ? model.process.noise.mean() : model.process.noise_variance;
+    for (std::size_t j = 0; j < model.outputs.size(); ++j) {
+      const Eigen::Index axis = model.outputs[j];
+      const Eigen::Index from = static_cast<Eigen::Index>(j) * N;
+      const Matrix block = covariance.block(from, from, N, N);
+      result.unit.col(axis) = ((R * block).array() * R.array()).rowwise().sum().max(0.0);
+      if (skill.dmp.scaling == DmpScaling::goal) result.unit.col(axis) *= change[axis] * change[axis];
+      result.latent[axis] = latent;
+      result.noise[axis] = noise;
+    }
+  }
+  return result;
+}
+
+Samples band(const SkillPredictor& predictor, const Vector& change, const Vector& phases, BandKind kind, double level,
+             double repetitions) {
+  const PositionVariance variance = position_variance(predictor, change, phases);
+  const auto& calibration = predictor.skill().calibration;
+  if (!calibration) {
+    const double nu =
+        predictor.processes().front().predict(inputs_of(predictor.skill().models.front(), change)).degrees_of_freedom;
+    // The covariance is nu / (nu - 2) times the squared scale that the quantile multiplies.
+    const double scale = std::isfinite(nu) ? std::sqrt((nu - 2) / nu) : 1.0;
+    return student_t_quantile(0.5 + level / 2, nu) * scale * variance.of_mean(0, repetitions).cwiseSqrt();
+  }
+  Samples total = variance.of_mean(calibration->target_variance, repetitions);
+  total.rowwise() += calibration->reproduction.array().square().matrix().transpose();
+  return factor(*calibration, kind, level) * total.cwiseSqrt();
+}
+
+std::optional<Calibration> calibrate(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                                     const SkillOptions& options) {
+  auto groups = by_target(rows);
+  std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
+  if (groups.size() < 3) return {};
+  SkillOptions inner = options;
+  inner.starts = 1;
+  inner.jobs = 1;
+  const Matrix R = response_matrix(rows.front().primitive.settings, 1.0, linspace(0, 1, phase_count));
+  std::vector<Miss> misses(groups.size());
+  parallel_for(groups.size(), options.jobs, [&](std::size_t g) {
+    const SkillPredictor predictor(train_skill(columns, without(rows, groups[g]), inner));
+    misses[g] = miss(predictor, rows, groups[g], R);
+  });
+
+  Calibration calibration;
+  calibration.targets = static_cast<int>(groups.size());
+  calibration.target_variance = effect_of_target(misses);
+  calibration.reproduction = Vector::Zero(rows.front().primitive.dimensions());
+  for (const auto& row : rows)
+    calibration.reproduction += row.primitive.rmse.cwiseAbs2() / static_cast<double>(rows.size());
+  calibration.reproduction = calibration.reproduction.cwiseSqrt();
+
+  std::vector<double> all, greatest;
+  for (const auto& miss : misses) {
+    Samples variance = miss.variance.of_mean(calibration.target_variance, miss.repetitions);
+    variance.rowwise() += calibration.reproduction.array().square().matrix().transpose();
+    // Both ends are given to the motion, so they say nothing.
+    const Samples ratio =
+        (miss.error.cwiseAbs().array() / variance.array().max(1e-24).sqrt()).middleRows(1, phase_count - 2);
+    all.insert(all.end(), ratio.data(), ratio.data() + ratio.size());
+    greatest.push_back(ratio.maxCoeff());
+  }
+  std::sort(all.begin(), all.end());
+  std::sort(greatest.begin(), greatest.end());
+  calibration.levels.resize(11);
+  calibration.levels << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99;
+  calibration.pointwise.resize(11);
+  calibration.path.resize(11);
+  for (Eigen::Index i = 0; i < calibration.levels.size(); ++i) {
+    calibration.pointwise[i] = quantile(all, calibration.levels[i]);
+    calibration.path[i] = conformal_quantile(greatest, calibration.levels[i]);
+  }
+  return calibration;
+}
+
+}  // namespace lfd

@@ -1,0 +1,191 @@
+#include "lfdtools/calibration.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "lfdtools/dmp_fit.hpp"
+#include "lfdtools/gaussian.hpp"
+#include "lfdtools/random.hpp"
+
+using namespace lfd;
+
+namespace {
+
+const std::vector<std::string> xy = {"x", "y"};
+const Vector phases = linspace(0, 1, 200);
+
+/// What is meant for a goal: minimum jerk and a bump that bends with the goal, on x; y goes straight.
+Samples meant(double goal) {
+  const Vector line = phases.array().cube() * (10 + phases.array() * (-15 + 6 * phases.array()));
+  Samples path(200, 2);
+  path.col(0) = goal * line;
+  path.col(1) = 0.2 * line;
+  path.col(0).array() += 0.05 * std::sin(6 * goal) * (std::numbers::pi * phases.array()).sin().square();
+  return path;
+}
+
+/// Demonstrations of one target: what is meant, what sets the target apart, and what sets each apart.
+std::vector<SkillRow> demonstrate(const std::string& target, double goal, int repetitions, double target_sd,
+                                  double own_sd, Random& random) {
+  const auto wave = [&](double sd) {
+    Samples wander = Samples::Zero(200, 2);
+    for (int j = 0; j < 2; ++j) {
+      for (const int k : {1, 2}) {
+        wander.col(j).array() += sd * random.normal() * (k * std::numbers::pi * phases.array()).sin().square();
+      }
+    }
+    return wander;
+  };
+  const Samples shared = meant(goal) + wave(target_sd);
+  std::vector<SkillRow> rows;
+  for (int r = 0; r < repetitions; ++r) {
+    DmpFitOptions fit;
+    fit.bases = 10;
+    rows.push_back({{target, {}, std::to_string(r + 1), {}}, fit_dmp({2 * phases, shared + wave(own_sd)}, fit)});
+  }
+  return rows;
+}
+
+std::vector<SkillRow> demonstrations(int targets, int repetitions, double target_sd, double own_sd, Random& random) {
+  std::vector<SkillRow> rows;
+  for (int i = 0; i < targets; ++i) {
+    const auto more = demonstrate(std::to_string(i + 1), 0.3 + 0.1 * i, repetitions, target_sd, own_sd, random);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  return rows;
+}
+
+Vector change_to(double goal) {
+  Vector change(2);
+  change << goal, 0.2;
+  return change;
+}
+
+}  // namespace
+
+TEST_CASE("the unit variance is that of motions whose weights have the covariance Omega") {
+  Random random(1);
+  const SkillPredictor predictor(train_skill(xy, demonstrations(4, 3, 0.01, 0.01, random)));
+  const Vector change = change_to(0.45);
+  const PositionVariance variance = position_variance(predictor, change, phases);
+  const Matrix covariance = predictor.processes()[1].weight_covariance(1);
+  Dmp dmp = predictor.primitive({{}, change, Vector::Zero(2), 1.0});
+  const Samples mean = rollout(dmp, phases).positions;
+  Vector sum = Vector::Zero(200);
+  const Matrix L = cholesky(covariance);
+  constexpr int draws = 4000;
+  const Matrix weights = dmp.weights;
+  for (int i = 0; i < draws; ++i) {
+    const Vector z = Vector::NullaryExpr(10, [&] { return random.normal(); });
+    dmp.weights.row(1) = weights.row(1) + (L * z).transpose();
+    sum += (rollout(dmp, phases).positions - mean).col(1).cwiseAbs2() / draws;
+  }
+  CHECK((sum - variance.unit.col(1)).cwiseAbs().maxCoeff() < 0.1 * variance.unit.col(1).maxCoeff());
+  CHECK(variance.latent[1] == predictor.processes()[1].predict(change).variance);
+  const Samples expected = variance.unit * (variance.latent + variance.noise / 4).asDiagonal();
+  CHECK((variance.of_mean(0, 4) - expected).norm() < 1e-15);
+}
+
+TEST_CASE("factors are the quantiles of what was missed on targets left out, measured on rolled-out motions") {
+  Random random(2);
+  const auto rows = demonstrations(5, 4, 0.01, 0.02, random);
+  SkillOptions options;
+  const auto calibration = calibrate(xy, rows, options);
+  REQUIRE(calibration);
+  CHECK(calibration->targets == 5);
+  options.starts = 1;
+  std::vector<double> greatest;
+  double effect = 0;
+  for (int pass = 0; pass < 2; ++pass) {  // the second uses the effect that the first found
+    for (int target = 1; target <= 5; ++target) {
+      std::vector<SkillRow> rest;
+      Samples mean = Samples::Zero(200, 2);
+      Vector change = Vector::Zero(2);
+      for (const auto& row : rows) {
+        if (row.labels.target != std::to_string(target)) {
+          rest.push_back(row);
+          continue;
+        }
+        Dmp unit = row.primitive;
+        unit.tau = 1;
+        mean += rollout(unit, phases).positions / 4;
+        change += row.change() / 4;
+      }
+      const SkillPredictor predictor(train_skill(xy, rest, options));
+      const Samples predicted = rollout(predictor.primitive({{}, change, Vector::Zero(2), 1.0}), phases).positions;
+      const PositionVariance variance = position_variance(predictor, change, phases);
+      if (pass == 0) {
+        effect += ((predicted - mean).squaredNorm() - variance.of_mean(0, 4).sum()) / variance.unit.sum() / 5;
+        continue;
+      }
+      Samples sd = variance.of_mean(std::max(0.0, effect), 4);
+      for (int j = 0; j < 2; ++j) sd.col(j).array() += calibration->reproduction[j] * calibration->reproduction[j];
+      greatest.push_back(((predicted - mean).cwiseAbs().array() / sd.array().sqrt()).middleRows(1, 198).maxCoeff());
+    }
+  }
+  CHECK(calibration->target_variance == Approx(std::max(0.0, effect)).epsilon(1e-6));
+  std::sort(greatest.begin(), greatest.end());
+  CHECK(calibration->path[4] == Approx(greatest[2]).epsilon(1e-6));   // level 0.5: rank ceil(6 * 0.5) = 3
+  CHECK(calibration->path[10] == Approx(greatest[4]).epsilon(1e-6));  // level 0.99: rank 6 is over 5
+}
+
+TEST_CASE("bands hold what they promise on new targets of the same kind") {
+  Random random(3);
+  double samples = 0;
+  double paths = 0;
+  double trusting = 0;
+  constexpr int trials = 30;
+  for (int trial = 0; trial < trials; ++trial) {
+    auto rows = demonstrations(6, 5, 0.02, 0.01, random);
+    SkillOptions options;
+    options.starts = 1;
+    Skill skill = train_skill(xy, rows, options);
+    const SkillPredictor plain(skill);
+    skill.calibration = calibrate(xy, rows, options);
+    const SkillPredictor predictor(skill);
+    const Vector change = change_to(0.55);
+    const auto fresh = demonstrate("new", 0.55, 50, 0.02, 0.01, random);
+    Samples truth = Samples::Zero(200, 2);
+    for (const auto& row : fresh) {
+      Dmp unit = row.primitive;
+      unit.tau = 1;
+      truth += rollout(unit, phases).positions / 50;
+    }
+    const Samples error =
+        (rollout(predictor.primitive({{}, change, Vector::Zero(2), 1.0}), phases).positions - truth).cwiseAbs();
+    const auto inside = [&](const Samples& half_width) {
+      return (error.array() <= half_width.array()).middleRows(1, 198).cast<double>().eval();
+    };
+    samples += inside(band(predictor, change, phases, BandKind::pointwise)).mean() / trials;
+    paths += inside(band(predictor, change, phases, BandKind::path)).minCoeff() / trials;
+    trusting += inside(band(plain, change, phases, BandKind::pointwise)).mean() / trials;
+  }
+  INFO("pointwise " << samples << ", paths " << paths << ", without calibration " << trusting);
+  CHECK(samples > 0.88);
+  CHECK(samples < 1);
+  CHECK(paths > 0.7);  // 6 / 7 but for chance: two sd of thirty trials
+  CHECK(trusting < samples - 0.1);
+}
+
+TEST_CASE("without a calibration the band is the process's own") {
+  Random random(4);
+  const SkillPredictor predictor(train_skill(xy, demonstrations(4, 2, 0.01, 0.01, random)));
+  const Vector change = change_to(0.5);
+  const double nu = predictor.processes()[0].predict(change).degrees_of_freedom;
+  const Samples sd = position_variance(predictor, change, phases).of_mean(0, 1).cwiseSqrt();
+  const Samples half = band(predictor, change, phases, BandKind::pointwise, 0.9, 1);
+  const double factor = student_t_quantile(0.95, nu) * std::sqrt((nu - 2) / nu);
+  CHECK((half - factor * sd).norm() < 1e-12);
+}
+
+TEST_CASE("too few targets that differ are not calibrated") {
+  Random random(5);
+  CHECK_FALSE(calibrate(xy, demonstrations(2, 3, 0.01, 0.01, random), {}));
+  auto rows = demonstrations(3, 3, 0.01, 0.01, random);
+  for (auto& row : rows) {
+    if (row.labels.target == "2") row.primitive.goal = rows.front().primitive.goal;
+  }
+  CHECK_FALSE(calibrate(xy, rows, {}));
+}
