@@ -68,7 +68,7 @@ TEST_CASE("scores of the line equal a computation by hand, for every target in o
     const Samples line = straight_line(start, goal, linspace(0, 1, 200));
     CHECK(validation.scores[i].labels.target == targets[i].labels.target);
     CHECK(validation.scores[i].rmse == Approx(rms_distance(line, mean)).epsilon(1e-12));
-    CHECK_FALSE(validation.scores[i].coverage95);
+    CHECK_FALSE(validation.scores[i].band95);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_CASE(
   const auto targets = by_target(synthesize(small_experiment()));
   ValidationOptions options;
   options.methods = {"skill", "nearest"};
-  options.k_to = 4;
+  options.preparation.k_to = 4;
   std::map<std::string, double> sum;
   const auto one = leave_one_target_out(targets, options);
   for (const auto& score : one.scores) sum[score.method] += score.rmse;
@@ -107,14 +107,14 @@ TEST_CASE(
   options.jobs = 2;
   const auto two = leave_one_target_out(targets, options);
   for (std::size_t i = 0; i < one.scores.size(); ++i) CHECK(one.scores[i].rmse == two.scores[i].rmse);
-  options.road = Road::references;
+  options.preparation.road = Road::references;
   options.methods = {"skill"};
   double references = 0;
   for (const auto& score : leave_one_target_out(targets, options).scores) {
     references += score.rmse;
-    REQUIRE(score.coverage95);
-    CHECK(*score.coverage95 >= 0);
-    CHECK(*score.coverage95 <= 1);
+    REQUIRE(score.band95);
+    CHECK(score.band95->pointwise >= 0);
+    CHECK(score.band95->pointwise <= 1);
   }
   CHECK(references < sum["nearest"]);
 }
