@@ -3,60 +3,37 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "judge_fixture.hpp"
 #include "lfdtools/error.hpp"
+#include "lfdtools/methods.hpp"
 #include "lfdtools/metrics.hpp"
-#include "lfdtools/synthesis.hpp"
 
 using namespace lfd;
 
 namespace {
 
-Experiment small_experiment() {
-  Experiment experiment;
-  experiment.start = Vector::Zero(3);
-  for (const double x : {0.2, 0.3, 0.4}) {
-    for (const double y : {0.1, 0.25}) {
-      Vector hole(3);
-      hole << x, y, 0.3;
-      experiment.holes.push_back({std::to_string(experiment.holes.size() + 1), hole});
-    }
-  }
-  experiment.repetitions = 3;
-  experiment.rate = 50;
-  Bump bump;
-  bump.constant = 0.05;
-  experiment.bumps = {Bump{}, Bump{}, bump};
-  return experiment;
+constexpr std::size_t method_count = 19;
+
+/// Every method, with few components so that it is quick.
+ValidationOptions every_method() {
+  ValidationOptions options;
+  options.preparation.k_to = 3;
+  return options;
 }
 
-std::vector<TargetDemonstrations> by_target(const DemonstrationSet& set) {
-  std::vector<TargetDemonstrations> targets;
-  for (const auto& demonstration : set.demonstrations) {
-    if (targets.empty() || targets.back().labels.target != demonstration.labels.target) {
-      targets.push_back({{demonstration.labels.target, {}, {}, {}}, {}});
-    }
-    targets.back().demonstrations.push_back(demonstration.trajectory);
+std::string id_of(const std::vector<TargetDemonstrations>& targets, const ValidationOptions& options) {
+  try {
+    (void)leave_one_target_out(targets, options);
+  } catch (const Error& error) {
+    return error.id();
   }
-  return targets;
+  return "";
 }
 
 }  // namespace
 
-TEST_CASE("the straight line is minimum jerk between its ends") {
-  Vector start(1);
-  Vector goal(1);
-  start << 1;
-  goal << 3;
-  Vector phases(3);
-  phases << 0, 0.5, 1;
-  const Samples line = straight_line(start, goal, phases);
-  CHECK(line(0, 0) == 1);
-  CHECK(line(1, 0) == Approx(2));
-  CHECK(line(2, 0) == 3);
-}
-
 TEST_CASE("scores of the line equal a computation by hand, for every target in order") {
-  const auto targets = by_target(synthesize(small_experiment()));
+  const auto targets = small_targets();
   ValidationOptions options;
   options.methods = {"line"};
   const Validation validation = leave_one_target_out(targets, options);
@@ -68,62 +45,141 @@ TEST_CASE("scores of the line equal a computation by hand, for every target in o
     const Samples line = straight_line(start, goal, linspace(0, 1, 200));
     CHECK(validation.scores[i].labels.target == targets[i].labels.target);
     CHECK(validation.scores[i].rmse == Approx(rms_distance(line, mean)).epsilon(1e-12));
-    CHECK_FALSE(validation.scores[i].coverage95);
+    CHECK_FALSE(validation.scores[i].band95);
   }
 }
 
-TEST_CASE("nothing of the left-out target reaches its prediction: the query's ends alone count") {
-  auto targets = by_target(synthesize(small_experiment()));
-  ValidationOptions options;
-  options.methods = {"skill", "affine", "nearest", "mean"};
-  const auto before = leave_one_target_out(targets, options);
-  // The middle of one target's demonstrations changes; its own predictions may not, so that its error grows by the
-  // change alone, while predictions of the others do change.
-  for (auto& demonstration : targets[2].demonstrations) {
-    const Eigen::Index T = demonstration.samples();
-    for (Eigen::Index k = 0; k < T; ++k) {
-      const double s = static_cast<double>(k) / static_cast<double>(T - 1);
-      demonstration.positions(k, 1) += 0.5 * s * s * (1 - s) * (1 - s) * 16;
+TEST_CASE("nothing of the left-out target but its ends reaches any method") {
+  auto targets = small_targets();
+  const auto before = leave_one_target_out(targets, every_method());
+  REQUIRE(before.scores.size() == 6 * method_count);
+  // The third target's demonstrations turn about the line between their ends, and so does its mean path. Predictions
+  // that stay leave a known error: |p - m'|^2 = |p - m|^2 + 2 (p - m).(m - m') + |m - m'|^2 cannot tell, so the change
+  // is made in a signal of its own.
+  for (auto& target : targets) {
+    for (auto& demonstration : target.demonstrations) {
+      demonstration.positions.conservativeResize(demonstration.samples(), 4);
+      demonstration.positions.col(3).setConstant(0.5);
     }
   }
-  const auto after = leave_one_target_out(targets, options);
-  for (std::size_t m = 0; m < 4; ++m) {
-    CHECK(after.scores[2 * 4 + m].end_error == Approx(before.scores[2 * 4 + m].end_error).epsilon(1e-9));
-    CHECK(after.scores[2 * 4 + m].rmse > 0.2);
+  const auto flat = leave_one_target_out(targets, every_method());
+  for (auto& demonstration : targets[2].demonstrations) {
+    for (Eigen::Index k = 0; k < demonstration.samples(); ++k) {
+      const double s = static_cast<double>(k) / static_cast<double>(demonstration.samples() - 1);
+      demonstration.positions(k, 3) += 3.2 * s * s * (1 - s) * (1 - s);
+    }
   }
-  CHECK(std::abs(after.scores[3 * 4].rmse - before.scores[3 * 4].rmse) > 1e-4);
+  const auto bent = leave_one_target_out(targets, every_method());
+  const Samples path = mean_path(targets[2].demonstrations, phase_count);
+  const double change = std::sqrt((path.col(3).array() - 0.5).square().mean());
+  for (std::size_t m = 0; m < method_count; ++m) {
+    const ValidationScore& score = bent.scores[2 * method_count + m];
+    CAPTURE(score.method);
+    // The prediction stays at 0.5 in the new signal and as it was in the others.
+    CHECK(score.rmse == Approx(std::hypot(flat.scores[2 * method_count + m].rmse, change)).epsilon(1e-6));
+    CHECK(score.end_error == Approx(flat.scores[2 * method_count + m].end_error).margin(1e-9));
+  }
+  // While the others, who learn from it, do change.
+  CHECK(std::abs(bent.scores[3 * method_count].rmse - flat.scores[3 * method_count].rmse) > 1e-4);
 }
 
-TEST_CASE(
-    "the skill beats the nearest target's weights where the intention is smooth, on both roads; jobs change nothing") {
-  const auto targets = by_target(synthesize(small_experiment()));
+TEST_CASE("the skill beats the nearest target's weights where the intention is smooth, on all roads, with any jobs") {
+  const auto targets = small_targets();
   ValidationOptions options;
   options.methods = {"skill", "nearest"};
-  options.k_to = 4;
-  std::map<std::string, double> sum;
-  const auto one = leave_one_target_out(targets, options);
-  for (const auto& score : one.scores) sum[score.method] += score.rmse;
-  CHECK(sum["skill"] < sum["nearest"]);
-  options.jobs = 2;
-  const auto two = leave_one_target_out(targets, options);
-  for (std::size_t i = 0; i < one.scores.size(); ++i) CHECK(one.scores[i].rmse == two.scores[i].rmse);
-  options.road = Road::references;
-  options.methods = {"skill"};
-  double references = 0;
-  for (const auto& score : leave_one_target_out(targets, options).scores) {
-    references += score.rmse;
-    REQUIRE(score.coverage95);
-    CHECK(*score.coverage95 >= 0);
-    CHECK(*score.coverage95 <= 1);
+  options.preparation.k_to = 4;
+  for (const Road road : {Road::recordings, Road::demonstrations, Road::references}) {
+    options.preparation.road = road;
+    options.jobs = 1;
+    std::map<std::string, double> sum;
+    const auto one = leave_one_target_out(targets, options);
+    for (const auto& score : one.scores) sum[score.method] += score.rmse;
+    CHECK(sum["skill"] < sum["nearest"]);
+    options.jobs = 2;
+    const auto two = leave_one_target_out(targets, options);
+    for (std::size_t i = 0; i < one.scores.size(); ++i) CHECK(one.scores[i].rmse == two.scores[i].rmse);
   }
-  CHECK(references < sum["nearest"]);
+}
+
+TEST_CASE("targets of one fold are left out together and scored as alone where nothing is learnt") {
+  const auto targets = small_targets();
+  ValidationOptions options;
+  options.methods = {"line", "mean-deviation"};
+  const auto alone = leave_one_target_out(targets, options);
+  options.folds = {4, 7, 4, 7, 9, 9};
+  const auto together = leave_one_target_out(targets, options);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(together.scores[2 * i].labels == targets[i].labels);
+    CHECK(together.scores[2 * i].rmse == alone.scores[2 * i].rmse);
+  }
+  // The mean of the four others, for target 0.
+  Samples mean = Samples::Zero(phase_count, 3);
+  for (const std::size_t i : {1, 3, 4, 5}) {
+    for (const auto& d : judged_target({}, targets[i].demonstrations).deviations) mean += d / 12.0;
+  }
+  const JudgedTarget judged = judged_target({}, targets[0].demonstrations);
+  const Samples path = straight_line(judged.query.start, judged.query.goal, linspace(0, 1, phase_count)) + mean;
+  CHECK(together.scores[1].rmse == Approx(rms_distance(path, judged.mean_path)).epsilon(1e-9));
+  options.folds = {1, 1, 1, 1, 1, 2};
+  CHECK(id_of(targets, options) == "validation.too_few_targets");
+}
+
+TEST_CASE("a band's score counts phases and signals, without the ends") {
+  const Samples path = Samples::Zero(5, 2);
+  Samples mean = Samples::Zero(5, 2);
+  mean(0, 0) = 9;  // an end
+  mean(2, 1) = 0.5;
+  const auto constant = [&](double pointwise, double whole) {
+    return Predicted{path, [=](BandKind kind, double) -> Samples {
+                       return Samples::Constant(5, 2, kind == BandKind::path ? whole : pointwise);
+                     }};
+  };
+  const BandScore score = band_score(constant(0.2, 0.4), 0.95, mean);
+  CHECK(score.pointwise == Approx(5.0 / 6.0));
+  CHECK(score.path == 0);
+  CHECK(score.width == Approx(0.2));
+  CHECK(band_score(constant(0.2, 0.5), 0.95, mean).path == 1);
+}
+
+TEST_CASE("bands widen with their level, so they hold more") {
+  ValidationOptions options;
+  options.methods = {"skill", "promp"};
+  for (const auto& score : leave_one_target_out(small_targets(), options).scores) {
+    REQUIRE(score.bands.size() == nominal_levels().size());
+    for (std::size_t k = 1; k < score.bands.size(); ++k) {
+      CHECK(score.bands[k].width >= score.bands[k - 1].width);
+      CHECK(score.bands[k].pointwise >= score.bands[k - 1].pointwise);
+    }
+    CHECK(score.bands[9].width == Approx(score.band95->width));
+  }
+}
+
+TEST_CASE("one demonstration a target is enough for every method") {
+  auto targets = small_targets();
+  for (auto& target : targets) target.demonstrations.resize(1);
+  const auto validation = leave_one_target_out(targets, every_method());
+  for (const auto& score : validation.scores) CHECK(std::isfinite(score.rmse));
+  CHECK_FALSE(validation.noise_floor[0]);
+}
+
+TEST_CASE("two targets that coincide are no obstacle; where nothing but one change is left to learn from, a skill is") {
+  auto targets = small_targets();
+  targets[1].demonstrations = targets[0].demonstrations;
+  for (const auto& score : leave_one_target_out(targets, every_method()).scores) CHECK(std::isfinite(score.rmse));
+  targets.resize(3);
+  for (auto& target : targets) target.demonstrations.resize(1);
+  ValidationOptions options;
+  options.methods = {"line", "nearest", "mean-deviation", "affine", "affine-prior", "promp", "gpr", "kmp"};
+  for (const auto& score : leave_one_target_out(targets, options).scores) CHECK(std::isfinite(score.rmse));
+  options.methods = {"skill"};
+  CHECK(id_of(targets, options) == "skill.one_target");
 }
 
 TEST_CASE("two targets or an unknown method are refused") {
-  auto targets = by_target(synthesize(small_experiment()));
+  auto targets = small_targets();
   ValidationOptions options;
   options.methods = {"oracle"};
   CHECK_THROWS_AS(leave_one_target_out(targets, options), UsageError);
   targets.resize(2);
-  CHECK_THROWS_AS(leave_one_target_out(targets, ValidationOptions{}), DataError);
+  CHECK(id_of(targets, ValidationOptions{}) == "validation.too_few_targets");
 }

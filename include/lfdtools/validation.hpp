@@ -5,81 +5,66 @@
 #include <string>
 #include <vector>
 
-#include "lfdtools/alignment.hpp"
-#include "lfdtools/dmp.hpp"
-#include "lfdtools/skill.hpp"
-#include "lfdtools/trajectory.hpp"
+#include "lfdtools/fold.hpp"
+#include "lfdtools/prediction.hpp"
 
 namespace lfd {
 
-/// The demonstrations of one target, as recorded.
-struct TargetDemonstrations {
-  Labels labels;
-  std::vector<Trajectory> demonstrations;
-};
-
-/// Which rows a skill learns from.
-enum class Road {
-  demonstrations,  ///< every aligned demonstration
-  references       ///< one GMM-GMR reference a target: the paper's
-};
-
-/// Names that ValidationOptions::methods may hold, and what they mean, for --help and the manual.
-struct MethodDescription {
-  std::string name;
-  std::string meaning;
-};
-[[nodiscard]] const std::vector<MethodDescription>& validation_methods();
-
 struct ValidationOptions {
-  std::vector<std::string> methods;  ///< empty: all of validation_methods()
-  Road road = Road::demonstrations;  ///< of the method `skill`; both papers' take references
-  AlignmentOptions alignment;
-  Eigen::Index k_from = 1;  ///< components of the references, chosen by BIC
-  Eigen::Index k_to = 12;
-  Eigen::Index bases = 15;
-  std::uint64_t seed = 1;
+  std::vector<std::string> methods;  ///< names of methods.hpp; empty: all
+  /// Fold of each target, any numbers; targets of one fold are left out together. Empty: each is a fold of its own.
+  std::vector<int> folds;
+  PreparationOptions preparation;
   unsigned jobs = 1;
+};
+
+/// How a band at some level does on one target.
+struct BandScore {
+  double pointwise =
+      0;             ///< share of (phase, signal) pairs of the mean path inside the pointwise band, without the ends
+  double path = 0;   ///< 1 if all of them are inside the band for whole paths, else 0
+  double width = 0;  ///< mean over these pairs of the half-width of the pointwise band [m]
 };
 
 /// How a method did on a target that it had not seen.
 struct ValidationScore {
   Labels labels;  ///< of the left-out target
   std::string method;
-  double rmse = 0;       ///< to the target's mean path at equal phases [m]
-  double end_error = 0;  ///< distance from the goal at tau [m]
-  double dtw = 0;        ///< mean distance along the cheapest DTW path to the mean path [m]
-  double outside = 0;    ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
-  std::optional<double>
-      coverage95;  ///< share of samples of the mean path inside the 95 % band on every axis; empty: no band
-  std::optional<double> path95;  ///< 1 if the whole mean path is inside, else 0
+  double rmse = 0;                  ///< to the target's mean path at equal phases [m]
+  double end_error = 0;             ///< distance from the goal at tau [m]
+  double dtw = 0;                   ///< mean distance along the cheapest DTW path to the mean path [m]
+  double outside = 0;               ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
+  std::optional<BandScore> band95;  ///< empty: the method has no band
+  std::vector<BandScore> bands;     ///< at nominal_levels(), or empty
+};
+
+/// Processor time that a method took to learn and to predict, over all folds [s]; without the preparation of rows.
+struct MethodTime {
+  std::string method;
+  double seconds = 0;
 };
 
 struct Validation {
-  std::vector<ValidationScore> scores;  ///< by target, then by method
+  std::vector<ValidationScore> scores;             ///< by target, then by method
+  std::vector<std::optional<double>> noise_floor;  ///< JudgedTarget::noise_floor of each target [m]
+  std::vector<MethodTime> times;                   ///< by method
   /// Training rows, over all folds, that the gate on small |g - y0| would have refused for `paper` and `paper-full`.
   int lifted_gates = 0;
 };
 
-/// Scores are taken on 200 phases. The mean path of a target is linear in each demonstration's own time, so that it
-/// owes nothing to the alignment under test. The left-out target's mean start and goal are the query. `outside` looks
-/// at deviations from the straight minimum-jerk line between start and goal: at each phase the box that the deviations
-/// of the demonstrations of the four nearest training targets span.
-/// @throws DataError [validation.too_few_targets] under three targets; UsageError [validation.method]; those of the
-/// stages
+/// Nominal levels of ValidationScore::bands: 0.1, 0.2, ... 0.9, 0.95, 0.99.
+[[nodiscard]] const std::vector<double>& nominal_levels();
+
+/// Leaves every target out once, alone or with the others of its fold. A method learns once a fold and is told of the
+/// left-out targets their mean start and mean goal, the query, and nothing else. `outside` looks at deviations from the
+/// straight minimum-jerk line between start and goal: at each phase the box that the deviations of the demonstrations
+/// of the four nearest training targets span.
+/// @throws DataError [validation.too_few_targets] under three targets, or where a fold leaves under two to learn from;
+///         UsageError [validation.method]; those of the stages, with method and fold named
 [[nodiscard]] Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets,
                                               const ValidationOptions& options);
 
-/// Straight minimum-jerk line y0 + mj(s) (g - y0), mj(s) = 10 s^3 - 15 s^4 + 6 s^5, n x D.
-/// @param phases  n in [0, 1]
-[[nodiscard]] Samples straight_line(const Vector& start, const Vector& goal, const Vector& phases);
-
-/// One reference of a target: its aligned demonstrations through GMM (K by BIC) and GMR, on 200 times.
-struct ReferencePath {
-  Trajectory path;  ///< 200 x D, times from 0
-  Vector start;     ///< mean of the measured starts, D [m]
-  Vector goal;      ///< mean of the measured goals, D [m]
-};
-[[nodiscard]] ReferencePath reference_path(const std::vector<Trajectory>& aligned, const ValidationOptions& options);
+/// @param predicted  with a band   @param mean_path  phase_count x D [m]
+[[nodiscard]] BandScore band_score(const Predicted& predicted, double level, const Samples& mean_path);
 
 }  // namespace lfd

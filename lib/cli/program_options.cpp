@@ -168,6 +168,16 @@ Program& Program::path(const std::string& names, std::string& value, const std::
   return *this;
 }
 
+Program& Program::optional_path(const std::string& names, std::optional<std::string>& value, const std::string& doc) {
+  auto text = std::make_shared<std::string>();
+  auto* option = impl_->app.add_flag(names, *text, doc);
+  option->multi_option_policy(CLI::MultiOptionPolicy::Throw)->type_name("[=FILE]");
+  impl_->checks.push_back([text, option, &value] {
+    if (option->count() > 0) value = *text == "true" ? "" : *text;  // what CLI11 calls a flag without a value
+  });
+  return *this;
+}
+
 Program& Program::choice_of_words(const std::string& names, const std::vector<std::string>& words,
                                   const std::string& chosen, const std::string& doc,
                                   std::function<void(const std::string&)> assign) {

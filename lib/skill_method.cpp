@@ -1,0 +1,60 @@
+#include "lfdtools/skill_method.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+namespace lfd {
+namespace {
+
+std::vector<std::string> signal_names(Eigen::Index D) {
+  std::vector<std::string> names;
+  for (Eigen::Index j = 0; j < D; ++j) names.push_back(fmt::format("s{}", j + 1));
+  return names;
+}
+
+/// @param rows_are_means  a row is a mean of demonstrations already, so its noise is that of a mean
+Predictor learnt(const std::vector<SkillRow>& rows, const SkillOptions& options, bool rows_are_means) {
+  const auto names = signal_names(rows.front().primitive.dimensions());
+  Skill trained = train_skill(names, rows, options);
+  trained.calibration = calibrate(names, rows, options);
+  const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));
+  return [skill, rows_are_means](const Query& query) {
+    const Dmp dmp = skill->primitive({{}, query.goal, query.start, {}});
+    const double averaged = rows_are_means ? 1.0 : static_cast<double>(query.repetitions);
+    const auto half_width = [skill, change = query.change(), averaged](BandKind kind, double level) {
+      return band(*skill, change, linspace(0, 1, phase_count), kind, level, averaged);
+    };
+    return Predicted{rollout(dmp, linspace(0, dmp.tau, phase_count)).positions, half_width};
+  };
+}
+
+}  // namespace
+
+Trainer skill_method(SkillStructure structure) {
+  return [structure](const Fold& fold, const PreparationOptions& options) {
+    std::vector<SkillRow> rows;
+    for (const auto* target : fold) {
+      for (const auto& row : target->examples) rows.push_back({target->labels, row.primitive});
+    }
+    SkillOptions learning;
+    learning.structure = structure;
+    learning.seed = options.seed;
+    return learnt(rows, learning, options.road == Road::references);
+  };
+}
+
+Trainer paper_method(SkillStructure structure) {
+  return [structure](const Fold& fold, const PreparationOptions& options) {
+    std::vector<SkillRow> rows;
+    for (const auto* target : fold) rows.push_back({target->labels, *target->paper});
+    SkillOptions learning;
+    learning.paper = true;
+    learning.structure = structure;
+    learning.seed = options.seed;
+    return learnt(rows, learning, true);
+  };
+}
+
+}  // namespace lfd
