@@ -50,18 +50,19 @@ Miss miss(const SkillPredictor& predictor, const std::vector<SkillRow>& rows, co
   Miss result;
   result.repetitions = static_cast<double>(group.size());
   const Dmp& any = rows[group.front()].primitive;
-  Vector change = Vector::Zero(any.dimensions());
+  Reach reach(Vector::Zero(any.dimensions()), -predictor.skill().start);
   Matrix force = Matrix::Zero(any.dimensions(), any.settings.bases());  // mean of s w
   for (const std::size_t i : group) {
     const Dmp& row = rows[i].primitive;
-    change += rows[i].change() / result.repetitions;
+    reach.change += rows[i].change() / result.repetitions;
+    reach.offset += row.start / result.repetitions;
     force += row.scale().asDiagonal() * row.weights / result.repetitions;
   }
-  Matrix predicted = predictor.weights(change).mean;
-  if (any.settings.scaling == DmpScaling::goal) predicted = change.asDiagonal() * predicted;
+  Matrix predicted = predictor.weights(reach).mean;
+  if (any.settings.scaling == DmpScaling::goal) predicted = reach.change.asDiagonal() * predicted;
   // The mean of the free responses is the free response to the mean change, so what differs is the forced part alone.
   result.error = R * (force - predicted).transpose();
-  result.variance = position_variance(predictor, change, linspace(0, 1, phase_count));
+  result.variance = position_variance(predictor, reach, linspace(0, 1, phase_count));
   return result;
 }
 
@@ -108,16 +109,16 @@ Samples PositionVariance::of_mean(double extra, double repetitions) const {
   return unit * relative.asDiagonal();
 }
 
-PositionVariance position_variance(const SkillPredictor& predictor, const Vector& change, const Vector& phases) {
+PositionVariance position_variance(const SkillPredictor& predictor, const Reach& reach, const Vector& phases) {
   const Skill& skill = predictor.skill();
-  const Eigen::Index D = change.size();
+  const Eigen::Index D = reach.change.size();
   const Eigen::Index N = skill.dmp.bases();
   const Matrix R = response_matrix(skill.dmp, 1.0, phases);
   PositionVariance result{Samples::Zero(phases.size(), D), Vector::Zero(D), Vector::Zero(D)};
   for (std::size_t m = 0; m < skill.models.size(); ++m) {
     const SkillModel& model = skill.models[m];
     const MvgpPredictor& process = predictor.processes()[m];
-    const double latent = process.predict(inputs_of(model, change)).variance;
+    const double latent = process.predict(inputs_of(model, reach)).variance;
     const Matrix covariance = process.weight_covariance(1);
     const double noise = model.process.noise.size() > 0 ? model.process.noise.mean() : model.process.noise_variance;
     for (std::size_t j = 0; j < model.outputs.size(); ++j) {
@@ -125,7 +126,7 @@ PositionVariance position_variance(const SkillPredictor& predictor, const Vector
       const Eigen::Index from = static_cast<Eigen::Index>(j) * N;
       const Matrix block = covariance.block(from, from, N, N);
       result.unit.col(axis) = ((R * block).array() * R.array()).rowwise().sum().max(0.0);
-      if (skill.dmp.scaling == DmpScaling::goal) result.unit.col(axis) *= change[axis] * change[axis];
+      if (skill.dmp.scaling == DmpScaling::goal) result.unit.col(axis) *= reach.change[axis] * reach.change[axis];
       result.latent[axis] = latent;
       result.noise[axis] = noise;
     }
@@ -133,13 +134,13 @@ PositionVariance position_variance(const SkillPredictor& predictor, const Vector
   return result;
 }
 
-Samples band(const SkillPredictor& predictor, const Vector& change, const Vector& phases, BandKind kind, double level,
+Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind, double level,
              double repetitions) {
-  const PositionVariance variance = position_variance(predictor, change, phases);
+  const PositionVariance variance = position_variance(predictor, reach, phases);
   const auto& calibration = predictor.skill().calibration;
   if (!calibration) {
     const double nu =
-        predictor.processes().front().predict(inputs_of(predictor.skill().models.front(), change)).degrees_of_freedom;
+        predictor.processes().front().predict(inputs_of(predictor.skill().models.front(), reach)).degrees_of_freedom;
     // The covariance is nu / (nu - 2) times the squared scale that the quantile multiplies.
     const double scale = std::isfinite(nu) ? std::sqrt((nu - 2) / nu) : 1.0;
     return student_t_quantile(0.5 + level / 2, nu) * scale * variance.of_mean(0, repetitions).cwiseSqrt();

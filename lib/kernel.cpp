@@ -76,24 +76,26 @@ Kernel se_ard_kernel(int p) {
   return {{{KernelType::se_ard, 1, inputs, Vector::Ones(p)}}};
 }
 
-namespace {
-
-/// constant + linear + one term of the type an input.
-Kernel kernel_by_input(int p, KernelType type) {
-  Kernel kernel{{{KernelType::constant, 1, {}, {}},
-                 {KernelType::linear, 1, se_ard_kernel(p).terms.front().inputs, Vector::Ones(p)}}};
-  for (int j = 0; j < p; ++j) kernel.terms.push_back({type, 1, {j}, Vector::Ones(1)});
+Kernel additive_kernel(const std::vector<std::vector<int>>& groups) {
+  Kernel kernel{{{KernelType::constant, 1, {}, {}}}};
+  for (const auto& inputs : groups) {
+    kernel.terms.push_back({KernelType::linear, 1, inputs, Vector::Ones(static_cast<Eigen::Index>(inputs.size()))});
+  }
+  for (const auto& inputs : groups) {
+    for (const int j : inputs) kernel.terms.push_back({KernelType::matern32, 1, {j}, Vector::Ones(1)});
+  }
   return kernel;
 }
 
-}  // namespace
-
 Kernel additive_kernel(int p) {
-  return kernel_by_input(p, KernelType::matern32);
+  return additive_kernel(std::vector<std::vector<int>>{se_ard_kernel(p).terms.front().inputs});
 }
 
 Kernel sum_kernel(int p) {
-  Kernel kernel = kernel_by_input(p, KernelType::se_ard);
+  Kernel kernel = additive_kernel(p);
+  for (auto& term : kernel.terms) {
+    if (term.type == KernelType::matern32) term.type = KernelType::se_ard;
+  }
   if (p > 1) kernel.terms.push_back(se_ard_kernel(p).terms.front());
   return kernel;
 }

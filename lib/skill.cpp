@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lfdtools/dmp_fit.hpp"
@@ -36,27 +37,44 @@ void check_rows(const std::vector<std::string>& columns, const std::vector<Skill
   }
 }
 
-std::vector<SkillModel> structure(SkillStructure wanted, bool paper, int D) {
+std::vector<SkillModel> structure(SkillStructure wanted, bool paper, bool starts, int D) {
   if (wanted == SkillStructure::automatic) wanted = paper ? SkillStructure::axis : SkillStructure::full;
-  std::vector<int> all(static_cast<std::size_t>(D));
-  for (int j = 0; j < D; ++j) all[static_cast<std::size_t>(j)] = j;
+  std::vector<int> outputs(static_cast<std::size_t>(D));
+  std::iota(outputs.begin(), outputs.end(), 0);
+  std::vector<int> inputs(static_cast<std::size_t>(starts ? 2 * D : D));
+  std::iota(inputs.begin(), inputs.end(), 0);
   std::vector<SkillModel> models;
   if (wanted == SkillStructure::joint) {
-    models.push_back({all, all, {}});
+    models.push_back({inputs, outputs, {}});
     return models;
   }
-  for (int j = 0; j < D; ++j) {
-    models.push_back({wanted == SkillStructure::axis ? std::vector<int>{j} : all, {j}, {}});
+  for (const int j : outputs) {
+    std::vector<int> own{j};
+    if (starts) own.push_back(D + j);
+    models.push_back({wanted == SkillStructure::axis ? own : inputs, {j}, {}});
   }
   return models;
 }
 
-MvgpOptions process_options(const SkillOptions& options, int p) {
+/// The additive kernel; changes and starts have a linear term each, for their ranges have nothing to do with each
+/// other.
+Kernel additive_kernel_of(const SkillModel& model, int D) {
+  std::vector<std::vector<int>> groups(1);
+  for (int i = 0; i < static_cast<int>(model.inputs.size()); ++i) {
+    const bool start = model.inputs[static_cast<std::size_t>(i)] >= D;
+    if (start && groups.size() == 1) groups.emplace_back();
+    groups[start ? 1 : 0].push_back(i);
+  }
+  return additive_kernel(groups);
+}
+
+MvgpOptions process_options(const SkillOptions& options, const SkillModel& model, int D) {
+  const int p = static_cast<int>(model.inputs.size());
   MvgpOptions process = options.paper ? paper_mvgp_options(p) : default_mvgp_options(p);
   if (options.kernel == SkillKernel::sum) {
     process.kernel = sum_kernel(p);
-  } else if (options.kernel == SkillKernel::additive) {
-    process.kernel = additive_kernel(p);
+  } else if (options.kernel == SkillKernel::additive || (options.kernel == SkillKernel::automatic && !options.paper)) {
+    process.kernel = additive_kernel_of(model, D);
   } else if (options.kernel != SkillKernel::automatic) {
     process.kernel = se_ard_kernel(p);
     if (options.kernel == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
@@ -192,17 +210,21 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
     }
   }
   skill.duration = duration_model(rows, options);
-  skill.models = structure(options.structure, options.paper, static_cast<int>(D));
+  const bool starts = options.inputs == SkillInputs::automatic ? !options.paper && skill.start_spread > start_tolerance
+                                                               : options.inputs == SkillInputs::change_and_start;
+  skill.models = structure(options.structure, options.paper, starts, static_cast<int>(D));
 
-  const Matrix all_changes = changes(rows);
   const Matrix metric = options.paper ? Matrix() : trajectory_metric(skill.dmp);
   const bool shared = !options.paper && skill.models.size() > 1 && skill.models[0].inputs == skill.models[1].inputs;
   for (std::size_t first = 0; first < skill.models.size(); first += shared ? skill.models.size() : 1) {
     const std::size_t last = shared ? skill.models.size() : first + 1;
     const SkillModel& model = skill.models[first];
     Matrix X(n, static_cast<Eigen::Index>(model.inputs.size()));
-    for (Eigen::Index j = 0; j < X.cols(); ++j) X.col(j) = all_changes.col(model.inputs[static_cast<std::size_t>(j)]);
-    MvgpOptions process = process_options(options, static_cast<int>(X.cols()));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const SkillRow& row = rows[static_cast<std::size_t>(i)];
+      X.row(i) = inputs_of(model, {row.change(), row.primitive.start - skill.start}).transpose();
+    }
+    MvgpOptions process = process_options(options, model, static_cast<int>(D));
     std::vector<Matrix> weights, coefficients;
     for (std::size_t m = first; m < last; ++m) {
       weights.push_back(weights_of(rows, skill.models[m].outputs));
@@ -224,22 +246,27 @@ bool is_trainable(const std::vector<SkillRow>& rows) {
   return (X.rowwise() - first).rowwise().norm().maxCoeff() >= 1e-6;
 }
 
-Vector inputs_of(const SkillModel& model, const Vector& change) {
+Vector inputs_of(const SkillModel& model, const Reach& reach) {
+  const Eigen::Index D = reach.change.size();
   Vector x(static_cast<Eigen::Index>(model.inputs.size()));
-  for (Eigen::Index j = 0; j < x.size(); ++j) x[j] = change[model.inputs[static_cast<std::size_t>(j)]];
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const int input = model.inputs[static_cast<std::size_t>(i)];
+    const bool start = input >= D;
+    x[i] = !start ? reach.change[input] : reach.offset.size() > 0 ? reach.offset[input - D] : 0.0;
+  }
   return x;
 }
 
-double region_excess(const Skill& skill, const Vector& change) {
+double region_excess(const Skill& skill, const Reach& reach) {
   double excess = 0;
   for (const auto& model : skill.models) {
-    for (std::size_t j = 0; j < model.inputs.size(); ++j) {
-      const auto column = model.process.X.col(static_cast<Eigen::Index>(j));
+    const Vector x = inputs_of(model, reach);
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+      const auto column = model.process.X.col(j);
       const double low = column.minCoeff();
       const double high = column.maxCoeff();
       const double margin = std::max(0.01, 0.1 * (high - low));
-      const double x = change[model.inputs[j]];
-      excess = std::max({excess, low - margin - x, x - high - margin});
+      excess = std::max({excess, low - margin - x[j], x[j] - high - margin});
     }
   }
   return excess;
@@ -249,13 +276,13 @@ SkillPredictor::SkillPredictor(Skill skill) : skill_(std::move(skill)) {
   for (const auto& model : skill_.models) predictors_.emplace_back(model.process);
 }
 
-WeightPrediction SkillPredictor::weights(const Vector& change) const {
+WeightPrediction SkillPredictor::weights(const Reach& reach) const {
   const Eigen::Index D = static_cast<Eigen::Index>(skill_.columns.size());
   const Eigen::Index N = skill_.dmp.bases();
   WeightPrediction prediction{Matrix::Zero(D, N), Matrix::Zero(D, N)};
   for (std::size_t m = 0; m < predictors_.size(); ++m) {
     const SkillModel& model = skill_.models[m];
-    const MvgpPrediction w = predictors_[m].predict(inputs_of(model, change));
+    const MvgpPrediction w = predictors_[m].predict(inputs_of(model, reach));
     const Vector sd = predictors_[m].weight_covariance(w.variance).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (std::size_t j = 0; j < model.outputs.size(); ++j) {
       const Eigen::Index from = static_cast<Eigen::Index>(j) * N;
@@ -266,14 +293,19 @@ WeightPrediction SkillPredictor::weights(const Vector& change) const {
   return prediction;
 }
 
+Reach SkillPredictor::reach(const Goal& goal) const {
+  const Vector start = goal.start.value_or(skill_.start);
+  return {goal.position - start, start - skill_.start};
+}
+
 Dmp SkillPredictor::primitive(const Goal& goal) const {
   Dmp dmp;
   dmp.settings = skill_.dmp;
   dmp.start = goal.start.value_or(skill_.start);
   dmp.goal = goal.position;
-  const Vector change = dmp.goal - dmp.start;
-  dmp.tau = goal.duration.value_or(skill_.duration.predict(change));
-  dmp.weights = weights(change).mean;
+  const Reach there = reach(goal);
+  dmp.tau = goal.duration.value_or(skill_.duration.predict(there.change));
+  dmp.weights = weights(there).mean;
   dmp.rmse = Vector::Zero(dmp.goal.size());
   return dmp;
 }

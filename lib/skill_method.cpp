@@ -23,8 +23,9 @@ Predictor learnt(const std::vector<SkillRow>& rows, const SkillOptions& options,
   return [skill, rows_are_means](const Query& query) {
     const Dmp dmp = skill->primitive({{}, query.goal, query.start, {}});
     const double averaged = rows_are_means ? 1.0 : static_cast<double>(query.repetitions);
-    const auto half_width = [skill, change = query.change(), averaged](BandKind kind, double level) {
-      return band(*skill, change, linspace(0, 1, phase_count), kind, level, averaged);
+    const auto half_width = [skill, reach = skill->reach({{}, query.goal, query.start, {}}), averaged](BandKind kind,
+                                                                                                       double level) {
+      return band(*skill, reach, linspace(0, 1, phase_count), kind, level, averaged);
     };
     return Predicted{rollout(dmp, linspace(0, dmp.tau, phase_count)).positions, half_width};
   };

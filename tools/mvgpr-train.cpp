@@ -24,6 +24,12 @@ int main(int argc, char** argv) {
                   {"full", SkillStructure::full},
                   {"joint", SkillStructure::joint}},
                  "what speaks for what: each axis for itself, all for each axis (Table 1), all for all");
+  program.choice("--inputs", options.inputs,
+                 {{"auto", SkillInputs::automatic},
+                  {"change", SkillInputs::change},
+                  {"change+start", SkillInputs::change_and_start}},
+                 "goal - start alone, or the start as well; auto: as well where starts differ by over 20 mm, but not "
+                 "with --paper");
   program.choice("--kernel", options.kernel,
                  {{"auto", SkillKernel::automatic},
                   {"additive", SkillKernel::additive},

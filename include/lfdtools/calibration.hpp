@@ -19,8 +19,8 @@ struct PositionVariance {
   [[nodiscard]] Samples of_mean(double extra, double repetitions) const;
 };
 
-/// @param change  dP, D [m]   @param phases  T, times over the duration
-[[nodiscard]] PositionVariance position_variance(const SkillPredictor& predictor, const Vector& change,
+/// @param phases  T, times over the duration
+[[nodiscard]] PositionVariance position_variance(const SkillPredictor& predictor, const Reach& reach,
                                                  const Vector& phases);
 
 /// Which samples a band promises to hold.
@@ -34,7 +34,7 @@ enum class BandKind {
 /// quantile of the process's Student-t and the band is only as honest as the process.
 /// @param level        share promised, in (0, 1)
 /// @param repetitions  of the mean path that is to be held: its noise is added; infinite: of the intention itself
-[[nodiscard]] Samples band(const SkillPredictor& predictor, const Vector& change, const Vector& phases, BandKind kind,
+[[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
 /// Leaves every target out in turn, trains on the others as `train_skill` does, and compares what is predicted with the

@@ -39,7 +39,9 @@ struct Kernel {
 /// The paper's kernel: one se-ard term over all p inputs, variance and length scales 1.
 [[nodiscard]] Kernel se_ard_kernel(int p);
 
-/// constant + linear + one Matern-3/2 term an input: the axes of dP act each for itself.
+/// constant + one linear term a group of inputs + one Matern-3/2 term an input: each input acts for itself.
+[[nodiscard]] Kernel additive_kernel(const std::vector<std::vector<int>>& groups);
+/// All inputs in one group.
 [[nodiscard]] Kernel additive_kernel(int p);
 
 /// constant + linear + one se-ard term an input + one over all inputs (left out when p = 1); variances and length

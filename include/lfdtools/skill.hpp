@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lfdtools/dmp.hpp"
@@ -20,6 +21,15 @@ struct SkillRow {
   [[nodiscard]] Vector change() const { return primitive.goal - primitive.start; }
 };
 
+/// Where a motion leads, as the processes see it.
+struct Reach {
+  Vector change;  ///< dP = goal - start, D [m]
+  Vector offset;  ///< start - Skill::start, D [m]; empty: zero
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a change alone says where, from the usual start.
+  Reach(Vector dP, Vector start_offset = {}) : change(std::move(dP)), offset(std::move(start_offset)) {}
+};
+
 /// Which components of dP speak for which weights.
 enum class SkillStructure {
   automatic,  ///< the library's choice: `full`
@@ -28,6 +38,16 @@ enum class SkillStructure {
               ///< kernel for all axes, each with an Omega of its own
   joint       ///< one model for all axes, R^D -> R^(D N)
 };
+
+/// What the processes see of a reach.
+enum class SkillInputs {
+  automatic,        ///< `change_and_start` where two rows start over 20 mm apart and the process is not the paper's
+  change,           ///< dP alone: the paper's
+  change_and_start  ///< dP, and start - mean start: a hand that starts elsewhere comes back to its usual way
+};
+
+/// Distance of two starts from which on a goal needs its own start, and a process an eye for it [m].
+inline constexpr double start_tolerance = 0.02;
 
 /// Covariance functions to choose from.
 enum class SkillKernel {
@@ -53,6 +73,7 @@ struct SkillOptions {
   /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means
   /// `axis`.
   bool paper = false;
+  SkillInputs inputs = SkillInputs::automatic;
   SkillKernel kernel = SkillKernel::automatic;
   SkillMean mean = SkillMean::automatic;
   OmegaRule omega = OmegaRule::integrated;
@@ -63,7 +84,7 @@ struct SkillOptions {
 
 /// One process of a skill. Columns of its Y: by signal in `outputs`, then by basis.
 struct SkillModel {
-  std::vector<int> inputs;   ///< signals whose change it sees, from 0
+  std::vector<int> inputs;   ///< from 0: signals j whose change it sees; D + j: signals whose start it sees
   std::vector<int> outputs;  ///< signals whose weights it gives, from 0
   MvgpModel process;
 };
@@ -109,8 +130,8 @@ struct Skill {
 /// Whether rows can make a skill: at least two, whose dP differ.
 [[nodiscard]] bool is_trainable(const std::vector<SkillRow>& rows);
 
-/// Components of dP that a model sees, p.
-[[nodiscard]] Vector inputs_of(const SkillModel& model, const Vector& change);
+/// Components of a reach that a model sees, p [m].
+[[nodiscard]] Vector inputs_of(const SkillModel& model, const Reach& reach);
 
 /// A, N x N lower triangular, so that the Euclidean distance of rows w A is the root mean square distance [m] over one
 /// duration of the motions that weights w of one axis make (scale 1): A A^T = R^T R / T, with a floor of 1e-6 of the
@@ -121,10 +142,10 @@ struct Skill {
 /// none), or them as they are (scaling goal).
 [[nodiscard]] Vector line_weights(const DmpSettings& settings);
 
-/// The demonstrated region: for each signal the interval that goal - start of the rows spans, widened at both ends by a
-/// tenth of its length and at least 10 mm.
-/// @return how far dP lies outside, the largest over the signals [m]; 0 inside
-[[nodiscard]] double region_excess(const Skill& skill, const Vector& change);
+/// The demonstrated region: for each input of the models (goal - start of each signal, and where they see it the start)
+/// the interval that the rows span, widened at both ends by a tenth of its length and at least 10 mm.
+/// @return how far a reach lies outside, the largest over the inputs [m]; 0 inside
+[[nodiscard]] double region_excess(const Skill& skill, const Reach& reach);
 
 /// Weights for one target.
 struct WeightPrediction {
@@ -148,8 +169,9 @@ class SkillPredictor {
   [[nodiscard]] const Skill& skill() const { return skill_; }
   /// One a model.
   [[nodiscard]] const std::vector<MvgpPredictor>& processes() const { return predictors_; }
-  /// @param change  dP, D [m]
-  [[nodiscard]] WeightPrediction weights(const Vector& change) const;
+  [[nodiscard]] WeightPrediction weights(const Reach& reach) const;
+  /// What the processes see of a goal.
+  [[nodiscard]] Reach reach(const Goal& goal) const;
   /// The primitive for a goal: predicted weights, goal, start and duration (Table 1, step 3). Rows fitted by
   /// `trajectory` all meet the condition y(tau) = g, which is linear in the weights, so predictions mixed from them
   /// meet it too.

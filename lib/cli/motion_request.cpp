@@ -78,21 +78,23 @@ void generate_from_skill(const SkillFile& file, const MotionRequest& request, Ru
                                                     : value_columns(skill.columns, request.derivatives));
   for (const Goal& goal : goals) {
     const std::string name = goal.labels.target ? describe(goal.labels) + ": " : std::string();
-    if (!goal.start && skill.start_spread > 0.02) {
+    if (!goal.start && skill.start_spread > start_tolerance) {
       run.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start"
                                       "",
                                       name, 1e3 * skill.start_spread));
     }
-    const Vector change = goal.position - goal.start.value_or(skill.start);
-    const double excess = region_excess(skill, change);
+    const Reach reach = predictor.reach(goal);
+    const double excess = region_excess(skill, reach);
     if (excess > 0) {
-      run.refuse("region",
-                 fmt::format("{}goal - start lies {:.1f} mm outside the demonstrated region (range of each signal, "
-                             "widened by a tenth)",
-                             name, 1e3 * excess));
+      run.refuse(
+          "region",
+          fmt::format(
+              "{}the goal lies {:.1f} mm outside the demonstrated region (range of goal - start, and of the start, "
+              "widened by a tenth)",
+              name, 1e3 * excess));
     }
     if (request.weights) {
-      write_weights(table, goal, predictor.weights(change), skill.columns);
+      write_weights(table, goal, predictor.weights(reach), skill.columns);
     } else {
       write_motion(table, goal.labels, predictor.primitive(goal), request);
     }

@@ -64,6 +64,12 @@ void check_covariance(const JsonView& view, const Matrix& A) {
   }
 }
 
+/// What inputs of models may be called: each signal (its goal - start), then start_ and each signal.
+std::vector<std::string> input_names(std::vector<std::string> columns) {
+  for (std::size_t j = 0, D = columns.size(); j < D; ++j) columns.push_back("start_" + columns[j]);
+  return columns;
+}
+
 KernelTerm read_term(const JsonView& view, const std::vector<std::string>& inputs, bool term_of_sum) {
   view.only({"type", "variance", "inputs", "length_scales"});
   KernelTerm term;
@@ -95,14 +101,14 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
   view.only({"inputs", "outputs", "kernel", "noise_variance", "noise", "mean", "X", "Y", "output_transform",
              "omega_rule", "omega", "nu", "psi", "log_marginal_likelihood"});
   SkillModel model;
-  model.inputs = indices(view.at("inputs"), columns);
+  model.inputs = indices(view.at("inputs"), input_names(columns));
   model.outputs = indices(view.at("outputs"), columns);
   const auto p = static_cast<Eigen::Index>(model.inputs.size());
   const auto d = static_cast<Eigen::Index>(model.outputs.size()) * N;
   if (p == 0) view.at("inputs").fail("skill.shape", "a model needs an input");
   if (d == 0) view.at("outputs").fail("skill.shape", "a model needs an output");
   MvgpModel& process = model.process;
-  process.kernel = read_kernel(view.at("kernel"), names(model.inputs, columns));
+  process.kernel = read_kernel(view.at("kernel"), names(model.inputs, input_names(columns)));
   process.noise_variance = view.at("noise_variance").number(0, 1e300);
   if (const auto noise = view.find("noise")) process.noise = noise->vector(n);
   const JsonView mean = view.at("mean");
@@ -140,7 +146,7 @@ void write_term(JsonWriter& json, const KernelTerm& term, const std::vector<std:
 
 void write_model(JsonWriter& json, const SkillModel& model, const std::vector<std::string>& columns) {
   const MvgpModel& process = model.process;
-  const auto inputs = names(model.inputs, columns);
+  const auto inputs = names(model.inputs, input_names(columns));
   json.begin_object().member("inputs", inputs).member("outputs", names(model.outputs, columns));
   json.key("kernel");
   if (process.kernel.terms.size() == 1) {
