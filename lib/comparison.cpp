@@ -89,10 +89,11 @@ std::vector<Reliability> reliability(const Validation& validation) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       Reliability row{time.method, levels[k], 0, 0, 0};
       for (const auto* score : scores) {
-        row.pointwise += score->bands[k].pointwise / static_cast<double>(scores.size());
-        row.path += score->bands[k].path / static_cast<double>(scores.size());
-        row.width += score->bands[k].width / static_cast<double>(scores.size());
+        row.pointwise += score->bands[k].pointwise;
+        row.path += score->bands[k].path;
+        row.width += score->bands[k].width;
       }
+      for (double* sum : {&row.pointwise, &row.path, &row.width}) *sum /= static_cast<double>(scores.size());
       rows.push_back(std::move(row));
     }
   }

@@ -1,4 +1,6 @@
 // Leave-one-target-out: how far a skill is from targets that it has not seen, beside opponents.
+#include <algorithm>
+
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/cli/validation_report.hpp"
 #include "lfdtools/io/demonstrations.hpp"
@@ -28,6 +30,14 @@ std::vector<int> folds_of(const std::string& file, const std::vector<TargetDemon
   std::vector<Labels> labels;
   for (const auto& target : targets) labels.push_back(target.labels);
   return read_folds(file, labels, messages);
+}
+
+/// @throws UsageError [usage.same_file]
+void check_names(std::vector<std::string> written) {
+  std::sort(written.begin(), written.end());
+  const auto first = std::find_if(written.begin(), written.end(), [](const auto& name) { return !name.empty(); });
+  const auto twice = std::adjacent_find(first, written.end());
+  if (twice != written.end()) throw UsageError("usage.same_file", *twice + " is to be written twice");
 }
 
 /// A file beside the output, whole or not at all.
@@ -70,6 +80,7 @@ int main(int argc, char** argv) {
   program.example("skill-validate demos.csv --table", "every method on every target");
   program.example("skill-validate demos.csv --methods skill,affine -o scores.csv --table=table.txt", "CSV and table");
   return program.run(argc, argv, [&](cli::Run& run) {
+    check_names({run.options().output, table.value_or(""), reliability, run.options().summary});
     const auto targets = read_targets(run, run.messages());
     if (!folds.empty()) options.folds = folds_of(folds, targets, run.messages());
     rows.bases = bases;

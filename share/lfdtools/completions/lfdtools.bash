@@ -13,7 +13,8 @@ _lfdtools_options() {
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
     skill-generate) echo "$common $gates --goal --goals --target --start --duration --dt --weights --derivatives" ;;
-    skill-validate) echo "$common $table -j --jobs --seed --methods --road --trim -n --basis -k --components --table" ;;
+    skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --repetitions --trim" \
+                         "-n --basis -k --components --table --reliability" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
     ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
@@ -40,8 +41,10 @@ _lfdtools_words() {
     mvgpr-train:--kernel) echo "auto sum se-ard matern32 matern52" ;;
     mvgpr-train:--mean) echo "zero constant linear" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
-    skill-validate:--methods) echo "skill paper paper-full line nearest mean affine affine-means" ;;
-    skill-validate:--road) echo "demonstrations references" ;;
+    skill-validate:--methods) echo "skill skill-axis skill-full skill-joint paper paper-full line nearest" \
+                                   "nearest-deviation mean mean-deviation moved-goal affine affine-means" \
+                                   "affine-prior affine-ends gpr promp kmp" ;;
+    skill-validate:--road) echo "recordings demonstrations references" ;;
     skill-plot:--kind) echo "auto motions planes time weights errors reliability" ;;
     skill-plot:--planes) echo "x-y y-z x-z x-y,y-z x-y,y-z,x-z" ;;
     *:--robot) echo "ur10 ur10e" ;;

@@ -4,7 +4,8 @@
 #   sh share/lfdtools/real/run.sh                        the recordings under $LFD_DATA_DIR (default: ../shared/data)
 #   sh share/lfdtools/real/run.sh demos.csv more.csv     your own, columns target,demo,t,x,y,z
 #
-# Results under build/real/NAME: leave-one-target-out.csv and .svg (bars), table.txt, aligned.csv,
+# Results under build/real/NAME: leave-one-target-out.csv and .svg (bars), table.txt, reliability.csv
+# and .svg (how often bands hold), aligned.csv,
 # skill-demonstrations.json, skill-references.json, motions-*.csv (to each target's own mean goal, from its own mean start), goals.csv.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,9 +24,10 @@ for demos in "$@"; do
   [ "$name" = demos ] && name=$(basename "$(dirname "$demos")")
   out=${LFD_OUT_DIR:-$root/build/real}/$name
   mkdir -p "$out"
-  "$bin/skill-validate" -q --trim "$demos" -o "$out/leave-one-target-out.csv"
-  "$bin/skill-validate" -q --trim --table "$demos" -o "$out/table.txt"
+  "$bin/skill-validate" -q --trim "$demos" -o "$out/leave-one-target-out.csv" --table="$out/table.txt" \
+    --reliability "$out/reliability.csv"
   "$bin/skill-plot" -q "$out/leave-one-target-out.csv" -o "$out/leave-one-target-out.svg"
+  "$bin/skill-plot" -q "$out/reliability.csv" -o "$out/reliability.svg"
   "$bin/demo-align" -q --trim --columns x,y,z "$demos" -o "$out/aligned.csv"
   "$bin/dmp-fit" "$out/aligned.csv" | "$bin/mvgpr-train" -o "$out/skill-demonstrations.json"
   "$bin/gmm-fit" -q "$out/aligned.csv" | "$bin/gmr-regress" -o "$out/reference.csv"
