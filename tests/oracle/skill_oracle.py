@@ -81,6 +81,7 @@ def check(checks, name, skill, goals, paper):
     columns = skill["columns"]
     for goal in goals:
         change = {c: g - s for c, g, s in zip(columns, goal, skill["start"])}
+        change.update({"start_" + c: 0.0 for c in columns})  # the goal has no start of its own, so it starts as usual
         got = weights_table(skill, goal)
         largest = max(np.abs(rows[:, 0]).max() for rows in got.values())
         widest = max(rows[:, 1].max() for rows in got.values())
