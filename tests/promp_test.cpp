@@ -59,6 +59,7 @@ TEST_CASE("a conditioned motion meets both ends of the query, where its band clo
   CHECK((predicted.path.row(0).transpose() - query.start).norm() < 2e-3);
   CHECK((predicted.path.row(phase_count - 1).transpose() - query.goal).norm() < 2e-3);
   REQUIRE(predicted.band);
-  CHECK(predicted.band(BandKind::pointwise, 0.95).row(0).maxCoeff() < predicted.band(BandKind::pointwise, 0.95).row(100).maxCoeff());
+  CHECK(predicted.band(BandKind::pointwise, 0.95).row(0).maxCoeff() <
+        predicted.band(BandKind::pointwise, 0.95).row(100).maxCoeff());
   CHECK(predicted.band(BandKind::pointwise, 0.95).row(0).maxCoeff() < 2.1e-3);
 }
