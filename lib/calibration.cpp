@@ -45,12 +45,13 @@ struct Miss {
   double repetitions = 1;
 };
 
-Miss miss(const SkillPredictor& predictor, const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group,
-          const Matrix& R) {
+/// @param searched  gives the error   @param known  the same rows under the skill's own hyperparameters: gives the sd
+Miss miss(const SkillPredictor& searched, const SkillPredictor& known, const std::vector<SkillRow>& rows,
+          const std::vector<std::size_t>& group, const Matrix& R) {
   Miss result;
   result.repetitions = static_cast<double>(group.size());
   const Dmp& any = rows[group.front()].primitive;
-  Reach reach(Vector::Zero(any.dimensions()), -predictor.skill().start);
+  Reach reach(Vector::Zero(any.dimensions()), -known.skill().start);
   Matrix force = Matrix::Zero(any.dimensions(), any.settings.bases());  // mean of s w
   for (const std::size_t i : group) {
     const Dmp& row = rows[i].primitive;
@@ -58,11 +59,11 @@ Miss miss(const SkillPredictor& predictor, const std::vector<SkillRow>& rows, co
     reach.offset += row.start / result.repetitions;
     force += row.scale().asDiagonal() * row.weights / result.repetitions;
   }
-  Matrix predicted = predictor.weights(reach).mean;
+  Matrix predicted = searched.weights(reach).mean;
   if (any.settings.scaling == DmpScaling::goal) predicted = reach.change.asDiagonal() * predicted;
   // The mean of the free responses is the free response to the mean change, so what differs is the forced part alone.
   result.error = R * (force - predicted).transpose();
-  result.variance = position_variance(predictor, reach, linspace(0, 1, phase_count));
+  result.variance = position_variance(known, reach, linspace(0, 1, phase_count));
   return result;
 }
 
@@ -80,14 +81,24 @@ double conformal_quantile(const std::vector<double>& sorted, double share) {
   return sorted[std::min(sorted.size(), static_cast<std::size_t>(std::max(1.0, rank))) - 1];
 }
 
-double effect_of_target(const std::vector<Miss>& misses) {
-  double sum = 0;
+/// The sd was measured on m targets, so what a new one misses in its units has the tails of a Student-t with m - 1
+/// degrees of freedom.
+double few_targets(std::size_t m, double level) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  return student_t_quantile((1 + level) / 2, static_cast<double>(m) - 1) /
+         student_t_quantile((1 + level) / 2, infinite);
+}
+
+Vector effect_of_target(const std::vector<Miss>& misses) {
+  Vector sum = Vector::Zero(misses.front().error.cols());
   for (const auto& miss : misses) {
-    const Samples& unit = miss.variance.unit;
-    const double explained = miss.variance.of_mean(0, miss.repetitions).sum();
-    sum += (miss.error.squaredNorm() - explained) / unit.sum();
+    const Samples explained = miss.variance.of_mean(Vector::Zero(sum.size()), miss.repetitions);
+    for (Eigen::Index j = 0; j < sum.size(); ++j) {
+      const double unit = miss.variance.unit.col(j).sum();
+      if (unit > 0) sum[j] += (miss.error.col(j).squaredNorm() - explained.col(j).sum()) / unit;
+    }
   }
-  return std::max(0.0, sum / static_cast<double>(misses.size()));
+  return (sum / static_cast<double>(misses.size())).cwiseMax(0.0);
 }
 
 double factor(const Calibration& calibration, BandKind kind, double level) {
@@ -104,9 +115,8 @@ double factor(const Calibration& calibration, BandKind kind, double level) {
 
 }  // namespace
 
-Samples PositionVariance::of_mean(double extra, double repetitions) const {
-  const Vector relative = (latent + noise / repetitions).array() + extra;
-  return unit * relative.asDiagonal();
+Samples PositionVariance::of_mean(const Vector& extra, double repetitions) const {
+  return unit * (latent + extra + noise / repetitions).asDiagonal();
 }
 
 PositionVariance position_variance(const SkillPredictor& predictor, const Reach& reach, const Vector& phases) {
@@ -143,26 +153,32 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
         predictor.processes().front().predict(inputs_of(predictor.skill().models.front(), reach)).degrees_of_freedom;
     // The covariance is nu / (nu - 2) times the squared scale that the quantile multiplies.
     const double scale = std::isfinite(nu) ? std::sqrt((nu - 2) / nu) : 1.0;
-    return student_t_quantile(0.5 + level / 2, nu) * scale * variance.of_mean(0, repetitions).cwiseSqrt();
+    return student_t_quantile(0.5 + level / 2, nu) * scale *
+           variance.of_mean(Vector::Zero(variance.latent.size()), repetitions).cwiseSqrt();
   }
   Samples total = variance.of_mean(calibration->target_variance, repetitions);
   total.rowwise() += calibration->reproduction.array().square().matrix().transpose();
   return factor(*calibration, kind, level) * total.cwiseSqrt();
 }
 
-std::optional<Calibration> calibrate(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
                                      const SkillOptions& options) {
   auto groups = by_target(rows);
   std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
   if (groups.size() < 3) return {};
-  SkillOptions inner = options;
-  inner.starts = 1;
-  inner.jobs = 1;
+  SkillOptions searching = options;
+  searching.starts = 1;
+  searching.jobs = 1;
+  searching.inputs = sees_starts(skill) ? SkillInputs::change_and_start : SkillInputs::change;
+  SkillOptions knowing = searching;
+  knowing.hyperparameters = &skill;
   const Matrix R = response_matrix(rows.front().primitive.settings, 1.0, linspace(0, 1, phase_count));
   std::vector<Miss> misses(groups.size());
   parallel_for(groups.size(), options.jobs, [&](std::size_t g) {
-    const SkillPredictor predictor(train_skill(columns, without(rows, groups[g]), inner));
-    misses[g] = miss(predictor, rows, groups[g], R);
+    const auto rest = without(rows, groups[g]);
+    const SkillPredictor searched(train_skill(skill.columns, rest, searching));
+    const SkillPredictor known(train_skill(skill.columns, rest, knowing));
+    misses[g] = miss(searched, known, rows, groups[g], R);
   });
 
   Calibration calibration;
@@ -190,8 +206,10 @@ std::optional<Calibration> calibrate(const std::vector<std::string>& columns, co
   calibration.pointwise.resize(11);
   calibration.path.resize(11);
   for (Eigen::Index i = 0; i < calibration.levels.size(); ++i) {
-    calibration.pointwise[i] = quantile(all, calibration.levels[i]);
-    calibration.path[i] = conformal_quantile(greatest, calibration.levels[i]);
+    const double level = calibration.levels[i];
+    const double few = few_targets(groups.size(), level);
+    calibration.pointwise[i] = few * quantile(all, level);
+    calibration.path[i] = few * conformal_quantile(greatest, level);
   }
   return calibration;
 }

@@ -210,8 +210,10 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
     }
   }
   skill.duration = duration_model(rows, options);
-  const bool starts = options.inputs == SkillInputs::automatic ? !options.paper && skill.start_spread > start_tolerance
-                                                               : options.inputs == SkillInputs::change_and_start;
+  const bool starts = options.hyperparameters != nullptr ? sees_starts(*options.hyperparameters)
+                      : options.inputs == SkillInputs::automatic
+                          ? !options.paper && skill.start_spread > start_tolerance
+                          : options.inputs == SkillInputs::change_and_start;
   skill.models = structure(options.structure, options.paper, starts, static_cast<int>(D));
 
   const Matrix metric = options.paper ? Matrix() : trajectory_metric(skill.dmp);
@@ -225,6 +227,12 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
       X.row(i) = inputs_of(model, {row.change(), row.primitive.start - skill.start}).transpose();
     }
     MvgpOptions process = process_options(options, model, static_cast<int>(D));
+    if (options.hyperparameters != nullptr) {
+      const MvgpModel& known = options.hyperparameters->models.at(first).process;
+      process.kernel = known.kernel;
+      process.noise_variance = known.noise_variance;
+      process.optimise = false;
+    }
     std::vector<Matrix> weights, coefficients;
     for (std::size_t m = first; m < last; ++m) {
       weights.push_back(weights_of(rows, skill.models[m].outputs));
@@ -237,6 +245,12 @@ Skill train_skill(const std::vector<std::string>& columns, const std::vector<Ski
     for (std::size_t m = first; m < last; ++m) skill.models[m].process = std::move(trained[m - first]);
   }
   return skill;
+}
+
+bool sees_starts(const Skill& skill) {
+  const auto D = static_cast<int>(skill.columns.size());
+  const auto& inputs = skill.models.front().inputs;
+  return std::any_of(inputs.begin(), inputs.end(), [D](int input) { return input >= D; });
 }
 
 bool is_trainable(const std::vector<SkillRow>& rows) {

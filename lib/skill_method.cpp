@@ -18,7 +18,7 @@ std::vector<std::string> signal_names(Eigen::Index D) {
 Predictor learnt(const std::vector<SkillRow>& rows, const SkillOptions& options, bool rows_are_means) {
   const auto names = signal_names(rows.front().primitive.dimensions());
   Skill trained = train_skill(names, rows, options);
-  trained.calibration = calibrate(names, rows, options);
+  trained.calibration = calibrate(trained, rows, options);
   const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));
   return [skill, rows_are_means](const Query& query) {
     const Dmp dmp = skill->primitive({{}, query.goal, query.start, {}});

@@ -23,7 +23,7 @@ SkillFile trained(const SkillOptions& options) {
     rows.push_back({{std::to_string(rows.size() + 1), "ann", "1", {}}, fit_dmp({phases * (1 + x), path}, fit)});
   }
   SkillFile file{{{"x", "y"}, {}, {}}, train_skill({"x", "y"}, rows, options)};
-  file.skill.calibration = calibrate({"x", "y"}, rows, options);
+  file.skill.calibration = calibrate(file.skill, rows, options);
   REQUIRE(file.skill.calibration);
   return file;
 }

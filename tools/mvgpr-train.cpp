@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
       rows.push_back({row.header.labels, std::move(row.dmp)});
     }
     file.skill = train_skill(file.header.columns, rows, options);
-    if (calibrated) file.skill.calibration = calibrate(file.header.columns, rows, options);
+    if (calibrated) file.skill.calibration = calibrate(file.skill, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     double evidence = 0;
     for (const auto& model : file.skill.models) evidence += model.process.log_marginal_likelihood;

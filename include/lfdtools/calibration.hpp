@@ -15,8 +15,9 @@ struct PositionVariance {
   Vector latent;  ///< D, relative latent variance k^ of (21) of the process that gives the axis
   Vector noise;   ///< D, relative noise variance of one demonstration
 
-  /// unit times (latent + extra + noise / repetitions), T x D [m^2]. @param repetitions  infinite: no noise
-  [[nodiscard]] Samples of_mean(double extra, double repetitions) const;
+  /// unit times (latent + extra + noise / repetitions), T x D [m^2].
+  /// @param extra  D, relative   @param repetitions  infinite: no noise
+  [[nodiscard]] Samples of_mean(const Vector& extra, double repetitions) const;
 };
 
 /// @param phases  T, times over the duration
@@ -37,18 +38,21 @@ enum class BandKind {
 [[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
-/// Leaves every target out in turn, trains on the others as `train_skill` does, and compares what is predicted with the
-/// mean of the target's rows.
+/// Leaves every target out in turn, learns from the others, and compares what is predicted with the mean of the
+/// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target. The sd beside
+/// it is that of the skill's own hyperparameters: searched anew, they fall now into one optimum and now into another,
+/// and a factor measured on the narrow sd of the one would be applied to the wide sd of the other.
 ///
 /// target_variance is what sets a target apart from what its neighbours say (rows of one target share it, so that
-/// repeating a target does not average it away), by moments: the mean over targets of
+/// repeating a target does not average it away), by moments on each axis: the mean over targets of
 /// (sum of squared errors) / (sum of unit variances) - latent - noise / rows, at least 0. The factors are quantiles of
 /// |error| / sd: `pointwise` over all samples and axes, `path` over the targets' greatest, with the rank
 /// ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability m / (m + 1)
 /// when that rank is over m.
 /// @return empty with fewer than three targets that differ
 /// @throws those of train_skill
-[[nodiscard]] std::optional<Calibration> calibrate(const std::vector<std::string>& columns,
-                                                   const std::vector<SkillRow>& rows, const SkillOptions& options);
+/// @param rows, options  those that the skill was trained with
+[[nodiscard]] std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
+                                                   const SkillOptions& options);
 
 }  // namespace lfd

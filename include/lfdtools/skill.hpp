@@ -68,6 +68,8 @@ enum class SkillMean {
   line  ///< known beforehand: the weights of the straight minimum-jerk motion, proportional to dP
 };
 
+struct Skill;
+
 struct SkillOptions {
   SkillStructure structure = SkillStructure::automatic;
   /// The published process: se-ard kernel, zero mean, plain weights, no priors. Structure `automatic` then means
@@ -80,6 +82,8 @@ struct SkillOptions {
   int starts = 5;
   std::uint64_t seed = 1;
   unsigned jobs = 1;
+  /// Kernels, noise and inputs of this skill are taken as they are, nothing is searched for.
+  const Skill* hyperparameters = nullptr;
 };
 
 /// One process of a skill. Columns of its Y: by signal in `outputs`, then by basis.
@@ -101,12 +105,12 @@ struct DurationModel {
 
 /// What leaving targets out says of a skill's uncertainty (calibration.hpp: `calibrate`).
 struct Calibration {
-  int targets = 0;             ///< left out in turn
-  double target_variance = 0;  ///< of what sets a target apart, relative to Omega as the kernel is
-  Vector reproduction;         ///< D, root mean square distance of the rows' primitives from their recordings [m]
-  Vector levels;               ///< L shares, rising
-  Vector pointwise;            ///< L factors on the sd that hold these shares of samples
-  Vector path;                 ///< L factors that hold whole paths of these shares of targets
+  int targets = 0;         ///< left out in turn
+  Vector target_variance;  ///< D, of what sets a target apart on each axis, relative to its Omega as the kernel is
+  Vector reproduction;     ///< D, root mean square distance of the rows' primitives from their recordings [m]
+  Vector levels;           ///< L shares, rising
+  Vector pointwise;        ///< L factors on the sd that hold these shares of samples
+  Vector path;             ///< L factors that hold whole paths of these shares of targets
 };
 
 struct Skill {
@@ -129,6 +133,9 @@ struct Skill {
 
 /// Whether rows can make a skill: at least two, whose dP differ.
 [[nodiscard]] bool is_trainable(const std::vector<SkillRow>& rows);
+
+/// Whether the processes see the start as well.
+[[nodiscard]] bool sees_starts(const Skill& skill);
 
 /// Components of a reach that a model sees, p [m].
 [[nodiscard]] Vector inputs_of(const SkillModel& model, const Reach& reach);

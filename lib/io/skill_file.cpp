@@ -182,7 +182,7 @@ Calibration read_calibration(const JsonView& view, Eigen::Index D) {
   view.only({"targets", "target_variance", "reproduction", "levels", "pointwise", "path"});
   Calibration calibration;
   calibration.targets = static_cast<int>(view.at("targets").integer(1, 1'000'000));
-  calibration.target_variance = view.at("target_variance").number(0, 1e300);
+  calibration.target_variance = view.at("target_variance").vector(D);
   calibration.reproduction = view.at("reproduction").vector(D);
   const auto L = static_cast<Eigen::Index>(view.at("levels").size());
   if (L == 0) view.at("levels").fail("skill.shape", "a calibration needs a level");
@@ -195,7 +195,7 @@ Calibration read_calibration(const JsonView& view, Eigen::Index D) {
     last = level;
   }
   if (calibration.pointwise.minCoeff() < 0 || calibration.path.minCoeff() < 0 ||
-      calibration.reproduction.minCoeff() < 0) {
+      calibration.reproduction.minCoeff() < 0 || calibration.target_variance.minCoeff() < 0) {
     view.fail("skill.calibration", "factors and distances must not be negative");
   }
   return calibration;
