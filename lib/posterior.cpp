@@ -166,23 +166,4 @@ Samples band(const MotionPosterior& posterior, const Vector& times, BandKind kin
   return half;
 }
 
-std::vector<Samples> goal_derivative(const SkillPredictor& predictor, const Goal& goal,
-                                     const MotionConstraints& constraints, const Vector& times) {
-  constexpr double h = 1e-5;
-  Goal moved = goal;
-  if (!goal.duration) {
-    const Vector change = goal.position - goal.start.value_or(predictor.skill().start);
-    moved.duration = predictor.skill().duration.predict(change);
-  }
-  std::vector<Samples> derivative;
-  for (Eigen::Index j = 0; j < goal.position.size(); ++j) {
-    moved.position = goal.position + h * Vector::Unit(goal.position.size(), j);
-    const Samples above = rollout(predict_motion(predictor, moved, constraints).course, times).positions;
-    moved.position = goal.position - h * Vector::Unit(goal.position.size(), j);
-    const Samples below = rollout(predict_motion(predictor, moved, constraints).course, times).positions;
-    derivative.emplace_back((above - below) / (2 * h));
-  }
-  return derivative;
-}
-
 }  // namespace lfd

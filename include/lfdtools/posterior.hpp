@@ -88,4 +88,14 @@ enum class BandKind {
 [[nodiscard]] std::vector<Samples> goal_derivative(const SkillPredictor& predictor, const Goal& goal,
                                                    const MotionConstraints& constraints, const Vector& times);
 
+/// What a goal that is not exactly known brings, to first order: y moves by (dy/dg) (g - its mean), beside all else.
+struct GoalSpread {
+  std::vector<Matrix> factors;  ///< by signal, T x D: (dy/dg) G with G G^T = Goal::covariance; empty: exactly known
+
+  /// T x D [m^2]; `like`: of that shape.
+  [[nodiscard]] Samples variance(const Samples& like) const;
+};
+[[nodiscard]] GoalSpread goal_spread(const SkillPredictor& predictor, const Goal& goal,
+                                     const MotionConstraints& constraints, const Vector& times);
+
 }  // namespace lfd
