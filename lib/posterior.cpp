@@ -166,4 +166,18 @@ Samples band(const MotionPosterior& posterior, const Vector& times, BandKind kin
   return half;
 }
 
+Samples motion_band(const SkillPredictor& predictor, const MotionPosterior& posterior, const Vector& times,
+                    BandKind kind, double level) {
+  if (!predictor.skill().calibration) return band(posterior, times, kind, level);
+  const Dmp& dmp = posterior.course.primitive;
+  const Vector change = dmp.goal - dmp.start;
+  const Vector phases = times / dmp.tau;
+  const Samples half = band(predictor, change, phases, kind, level);
+  if (!posterior.constrained) return half;
+  const PositionVariance without = position_variance(predictor, change, phases);
+  const Samples before = (without.unit * without.latent.asDiagonal()).array().sqrt();
+  const Samples sd = standard_deviation(posterior, times, Spread::latent);
+  return (before.array() > 0).select(half.array() * sd.array() / before.array().max(1e-300), 0.0);
+}
+
 }  // namespace lfd

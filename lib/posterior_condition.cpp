@@ -226,12 +226,14 @@ MotionPosterior predict_motion(const SkillPredictor& predictor, const Goal& goal
   dmp = predictor.primitive(goal);
   if (constraints.start_velocity) posterior.course.start_velocity = *constraints.start_velocity;
   for (std::size_t m = 0; m < skill.models.size(); ++m) {
-    posterior.blocks.push_back(block_of(skill.models[m], predictor.processes()[m].predict(inputs_of(skill.models[m], dmp.goal - dmp.start))));
+    posterior.blocks.push_back(
+        block_of(skill.models[m], predictor.processes()[m].predict(inputs_of(skill.models[m], dmp.goal - dmp.start))));
   }
   constexpr double rounding = 1e-6;  // [m]
   Vector end(1);
   end << dmp.tau;
   const double miss = (rollout(posterior.course, end).positions.row(0).transpose() - dmp.goal).cwiseAbs().maxCoeff();
+  posterior.constrained = !constraints.empty();
   posterior.ends_on_goal = !constraints.empty() || miss < rounding;
   if (!posterior.ends_on_goal) return posterior;
   const auto demands = demands_of(dmp, constraints);

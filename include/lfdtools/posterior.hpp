@@ -1,6 +1,7 @@
 // What a skill knows about a motion: its mean, how far it may be off, and the motion nearest to it that meets a demand.
 #pragma once
 
+#include "lfdtools/calibration.hpp"
 #include "lfdtools/course.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/skill.hpp"
@@ -45,6 +46,7 @@ struct MotionConstraints {
 struct MotionPosterior {
   Course course;                       ///< with the mean of the weights
   std::vector<PosteriorBlock> blocks;  ///< independent of each other
+  bool constrained = false;            ///< there were demands beside the end
   bool ends_on_goal = false;           ///< y(tau) = g was demanded: no spread there
   double distance = 0;                 ///< Mahalanobis distance of the demands from the prediction, latent [1]
 };
@@ -73,24 +75,22 @@ struct MotionPosterior {
 /// One draw: the weights' normal deviation over sqrt(chi^2 / nu), one chi^2 a process. It meets the exact demands.
 [[nodiscard]] Course draw(const MotionPosterior& posterior, Spread spread, Random& random);
 
-enum class BandKind {
-  pointwise,  ///< holds the intention at each time, on each axis, with the given probability
-  path        ///< holds the whole intention at all times up to tau, on all axes
-};
-
-/// Half-widths of a band about the mean, T x D [m]: latent scales times a factor. Pointwise it is the quantile of
-/// Student's t; for the path the quantile of the largest ratio of deviation to scale along the motion, from 4000 seeded
-/// draws. Both hold as far as the model does.
+/// Half-widths of a band about the mean that holds the intention as far as the process is right, T x D [m]: latent
+/// scales times the quantile of Student's t at each time on each axis, or, for the whole path up to tau on all axes,
+/// the quantile of the largest ratio of deviation to scale along the motion, from 4000 seeded draws.
 [[nodiscard]] Samples band(const MotionPosterior& posterior, const Vector& times, BandKind kind, double level = 0.95);
 
-/// dy/dg_j at fixed tau, D matrices of T x D [1]: how the mean follows the goal, weights, end and demands included, by
-/// central differences of 10 um (their error is that of the third derivative: under 1e-6 for length scales over 10 mm).
-[[nodiscard]] std::vector<Samples> goal_derivative(const SkillPredictor& predictor, const Goal& goal,
-                                                   const MotionConstraints& constraints, const Vector& times);
+/// The band of a motion, T x D [m]: that of the skill's calibration (calibration.hpp), which has been held against
+/// targets left out; narrowed where demands were made, by the ratio of the latent sd with them to that without. Of a
+/// skill that is not calibrated, the process's own above.
+[[nodiscard]] Samples motion_band(const SkillPredictor& predictor, const MotionPosterior& posterior,
+                                  const Vector& times, BandKind kind, double level = 0.95);
 
-/// What a goal that is not exactly known brings, to first order: y moves by (dy/dg) (g - its mean), beside all else.
+/// What a goal that is not exactly known adds to the covariance of a motion, weights, end and demands included, at
+/// fixed tau. With G_i the columns of a root of Goal::covariance, column i is (y(g + G_i) - y(g - G_i)) / 2: dy/dg G_i
+/// where the prediction is straight over one standard deviation of the goal, its chord where it is not.
 struct GoalSpread {
-  std::vector<Matrix> factors;  ///< by signal, T x D: (dy/dg) G with G G^T = Goal::covariance; empty: exactly known
+  std::vector<Matrix> factors;  ///< by signal, T x D [m]; empty: the goal is exactly known
 
   /// T x D [m^2]; `like`: of that shape.
   [[nodiscard]] Samples variance(const Samples& like) const;

@@ -80,7 +80,7 @@ class Answer {
       rows = beside(rows, (sd.array().square() + more.array()).sqrt());
     }
     if (request_.band) {
-      const Samples half = band(posterior, mean.times, *request_.band);
+      const Samples half = motion_band(predictor_, posterior, mean.times, *request_.band);
       rows = beside(rows, (half.array().square() + 1.959963984540054 * 1.959963984540054 * more.array()).sqrt());
     }
     table.write(goal.labels, rows);

@@ -7,26 +7,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.stats import t as student
 
+from process import kernel, mean
 from toolchain import Checks, documents, groups, positions, run, synthetic
 
 AXES = ("x", "y", "z")
-
-
-def kernel(m, a, b):
-    terms = m["kernel"]["terms"] if m["kernel"]["type"] == "sum" else [m["kernel"]]
-    total = np.zeros((len(a), len(b)))
-    for k in terms:
-        on = [m["inputs"].index(name) for name in k.get("inputs", m["inputs"])]
-        if k["type"] == "constant":
-            total += k["variance"]
-            continue
-        p, q = a[:, on] / k["length_scales"], b[:, on] / k["length_scales"]
-        if k["type"] == "linear":
-            total += k["variance"] * p @ q.T
-        else:
-            assert k["type"] == "se-ard", k["type"]
-            total += k["variance"] * np.exp(-0.5 * ((p[:, None] - q[None]) ** 2).sum(2))
-    return total
 
 
 def row(skill, m, goal):
@@ -36,11 +20,10 @@ def row(skill, m, goal):
     X, Y = np.array(m["X"]), np.array(m["Y"])
     K = kernel(m, X, X) + np.diag(m.get("noise", np.full(len(X), m["noise_variance"])))
     k = kernel(m, x, X)
-    assert m["mean"]["type"] == "zero"
     latent = kernel(m, x, x)[0, 0] - (k @ np.linalg.solve(K, k.T))[0, 0]
     back = np.eye(Y.shape[1]) if m["output_transform"] is None else np.linalg.inv(m["output_transform"])
     omega = back.T @ m["omega"] @ back
-    return (k @ np.linalg.solve(K, Y))[0] @ back, latent * omega, m["noise_variance"] * omega, m["nu"] + len(X) - Y.shape[1] + 1
+    return (mean(m, x) + k @ np.linalg.solve(K, Y - mean(m, X)))[0] @ back, latent * omega, m["noise_variance"] * omega, m["nu"] + len(X) - Y.shape[1] + 1
 
 
 def activations(d, x):
@@ -95,6 +78,7 @@ def spread(checks, name, skill, goal):
     """--covariance and --sd against the weights' posterior, conditioned on the end."""
     tau = 2.5
     joint = len(skill["models"]) == 1
+    skill = {key: value for key, value in skill.items() if key != "calibration"}  # the band of the process itself
     for kind in ("latent", "predictive"):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "covariance.json")
