@@ -170,11 +170,11 @@ Samples motion_band(const SkillPredictor& predictor, const MotionPosterior& post
                     BandKind kind, double level) {
   if (!predictor.skill().calibration) return band(posterior, times, kind, level);
   const Dmp& dmp = posterior.course.primitive;
-  const Vector change = dmp.goal - dmp.start;
+  const Reach reach(dmp.goal - dmp.start, dmp.start - predictor.skill().start);
   const Vector phases = times / dmp.tau;
-  const Samples half = band(predictor, change, phases, kind, level);
+  const Samples half = band(predictor, reach, phases, kind, level);
   if (!posterior.constrained) return half;
-  const PositionVariance without = position_variance(predictor, change, phases);
+  const PositionVariance without = position_variance(predictor, reach, phases);
   const Samples before = (without.unit * without.latent.asDiagonal()).array().sqrt();
   const Samples sd = standard_deviation(posterior, times, Spread::latent);
   return (before.array() > 0).select(half.array() * sd.array() / before.array().max(1e-300), 0.0);

@@ -227,7 +227,7 @@ MotionPosterior predict_motion(const SkillPredictor& predictor, const Goal& goal
   if (constraints.start_velocity) posterior.course.start_velocity = *constraints.start_velocity;
   for (std::size_t m = 0; m < skill.models.size(); ++m) {
     posterior.blocks.push_back(
-        block_of(skill.models[m], predictor.processes()[m].predict(inputs_of(skill.models[m], dmp.goal - dmp.start))));
+        block_of(skill.models[m], predictor.processes()[m].predict(inputs_of(skill.models[m], predictor.reach(goal)))));
   }
   constexpr double rounding = 1e-6;  // [m]
   Vector end(1);

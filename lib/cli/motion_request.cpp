@@ -38,7 +38,7 @@ class Answer {
 
   void weights(const Goal& goal, LabelledTable& table) {
     gates(goal);
-    write_weights(table, goal, predictor_.weights(change(goal)), file_.skill.columns);
+    write_weights(table, goal, predictor_.weights(predictor_.reach(goal)), file_.skill.columns);
   }
 
   void motion(const Goal& goal, std::size_t number, LabelledTable& table) {
@@ -87,21 +87,21 @@ class Answer {
   }
 
  private:
-  [[nodiscard]] Vector change(const Goal& goal) const { return goal.position - goal.start.value_or(file_.skill.start); }
-
   void gates(const Goal& goal) {
     const Skill& skill = file_.skill;
     const std::string name = prefix_of(goal.labels);
-    if (!goal.start && skill.start_spread > 0.02) {
+    if (!goal.start && skill.start_spread > start_tolerance) {
       run_.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start",
                                        name, 1e3 * skill.start_spread));
     }
-    const double excess = region_excess(skill, change(goal));
+    const double excess = region_excess(skill, predictor_.reach(goal));
     if (excess > 0) {
-      run_.refuse("region",
-                  fmt::format("{}goal - start lies {:.1f} mm outside the demonstrated region (range of each signal, "
-                              "widened by a tenth)",
-                              name, 1e3 * excess));
+      run_.refuse(
+          "region",
+          fmt::format(
+              "{}the goal lies {:.1f} mm outside the demonstrated region (range of goal - start, and of the start, "
+              "widened by a tenth)",
+              name, 1e3 * excess));
     }
   }
 
