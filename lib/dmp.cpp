@@ -3,113 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lfdtools/error.hpp"
+#include "march.hpp"
 
 namespace lfd {
 namespace {
-
-// Gauss-Legendre with six nodes, exact for polynomials of degree 11, on [0, 1].
-constexpr int nodes = 6;
-constexpr std::array<double, nodes> node_at = {0.033765242898423975, 0.169395306766867743, 0.380690406958401545,
-                                               0.619309593041598455, 0.830604693233132257, 0.966234757101576025};
-constexpr std::array<double, nodes> node_weight = {0.085662246189585173, 0.180380786524069303, 0.233956967286345524,
-                                                   0.233956967286345524, 0.180380786524069303, 0.085662246189585173};
-
-// Below this phase the forcing term is far under the rounding of any position, and the spring alone goes on.
-constexpr double quiet_phase = 1e-30;
-
-void check_times(const Vector& times) {
-  if (!times.allFinite()) throw DataError("dmp.times", "a time is not a finite number");
-  double last = 0;
-  for (const double t : times) {
-    if (t < last) throw DataError("dmp.times", fmt::format("time {} s comes after {} s", t, last));
-    last = t;
-  }
-}
 
 void check_duration(double tau) {
   if (!(tau > 0) || !std::isfinite(tau)) {
     throw DataError("dmp.duration", fmt::format("the duration is {} s, not a positive number", tau));
   }
 }
-
-// Equal steps a unit of relative time, so that s = 1 lies on the grid. Six nodes a step leave an error of rounding for
-// steps of the lengths below (dmp_test.cpp). Settings from elsewhere with needle-like functions stop at 10^5 steps.
-Eigen::Index steps_per_unit(const DmpSettings& settings) {
-  const double resolution = time_resolution(settings.basis(), settings.canonical());
-  const double h = std::min({resolution / 2, 1 / settings.alpha_x, 1 / settings.spring().fast_rate()});
-  return static_cast<Eigen::Index>(std::ceil(1 / std::clamp(h, 1e-5, 1.0)));
-}
-
-// Marches M systems e'' + alpha_z e' + alpha_z beta_z e = f_m(x(s)) through relative time. State and forcing are
-// vectors of length M; forcing(x) returns the M forces at phase x.
-template <typename Forcing>
-class March {
- public:
-  March(const DmpSettings& settings, Forcing forcing, Vector deviation)
-      : spring_(settings.spring()),
-        canonical_(settings.canonical()),
-        forcing_(std::move(forcing)),
-        steps_(steps_per_unit(settings)),
-        quiet_(canonical_.relative_time(quiet_phase)),
-        e_(std::move(deviation)),
-        v_(Vector::Zero(e_.size())) {}
-
-  // Moves on to relative time s, not before that of the last call.
-  void to(double s) {
-    const double h = 1 / static_cast<double>(steps_);
-    while (grid_time(k_ + 1) <= std::min(s, quiet_)) {
-      step(e_, v_, grid_time(k_), h);
-      ++k_;
-    }
-    e = e_;
-    v = v_;
-    const double s_k = grid_time(k_);
-    step(e, v, s_k, std::min(s, std::max(quiet_, s_k)) - s_k);
-    if (s > std::max(quiet_, s_k)) apply(spring_.step(s - std::max(quiet_, s_k)), e, v);
-    f = forcing_(canonical_.phase(s));
-  }
-
-  // e'' from the differential equation itself.
-  [[nodiscard]] Vector acceleration() const { return f - spring_.alpha_z * v - (spring_.alpha_z * spring_.beta_z) * e; }
-
-  Vector e;  // deviation at s
-  Vector v;  // e' at s
-  Vector f;  // forcing term at s
-
- private:
-  [[nodiscard]] double grid_time(Eigen::Index k) const { return static_cast<double>(k) / static_cast<double>(steps_); }
-
-  static void apply(const SpringStep& A, Vector& a, Vector& b) {
-    const Vector was = a;
-    a = A.ee * was + A.ev * b;
-    b = A.ve * was + A.vv * b;
-  }
-
-  // Variation of constants over [s, s + h]: the state moves on freely, and each force adds its response to an impulse.
-  void step(Vector& a, Vector& b, double s, double h) const {
-    if (!(h > 0)) return;
-    apply(spring_.step(h), a, b);
-    for (std::size_t j = 0; j < nodes; ++j) {
-      const SpringStep impulse = spring_.step(h * (1 - node_at[j]));
-      const Vector force = forcing_(canonical_.phase(s + h * node_at[j]));
-      a += (h * node_weight[j] * impulse.ev) * force;
-      b += (h * node_weight[j] * impulse.vv) * force;
-    }
-  }
-
-  Spring spring_;
-  CanonicalSystem canonical_;
-  Forcing forcing_;
-  Eigen::Index steps_;
-  double quiet_;
-  Eigen::Index k_ = 0;
-  Vector e_;  // deviation at grid time k
-  Vector v_;
-};
 
 }  // namespace
 
@@ -159,7 +65,7 @@ Motion rollout(const Dmp& dmp, const Vector& times) {
   const Matrix W = dmp.scale().asDiagonal() * dmp.weights;
   const Basis basis = dmp.settings.basis();
   // Paper eq. (12) and (24), all axes at once.
-  const auto forcing = [&](double x) -> Vector { return W * (x * normalized_activations(basis, x)); };
+  const auto forcing = [&](double, double x) -> Vector { return W * (x * normalized_activations(basis, x)); };
   March march(dmp.settings, forcing, dmp.start - dmp.goal);
   const Eigen::Index T = times.size();
   const Eigen::Index D = dmp.dimensions();
@@ -201,7 +107,7 @@ DmpResponse response(const DmpSettings& settings, double tau, const Vector& time
   const Basis basis = settings.basis();
   const Eigen::Index T = times.size();
   const Eigen::Index N = basis.size();
-  const auto forcing = [&](double x) -> Vector { return x * normalized_activations(basis, x); };
+  const auto forcing = [&](double, double x) -> Vector { return x * normalized_activations(basis, x); };
   March march(settings, forcing, Vector::Zero(N));
   DmpResponse R{Matrix(T, N), Matrix(T, N), Matrix(T, N)};
   for (Eigen::Index k = 0; k < T; ++k) {

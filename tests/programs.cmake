@@ -10,7 +10,7 @@ foreach(program IN ITEMS demo-synth demo-align gmm-fit gmr-regress dmp-fit mvgpr
   set_tests_properties("cases: ${program}" PROPERTIES TIMEOUT 120)
 endforeach()
 
-foreach(oracle IN ITEMS dtw gmm gmr dmp skill validation arm)
+foreach(oracle IN ITEMS dtw gmm gmr dmp skill motion validation arm)
   add_test(NAME "oracle: ${oracle}"
            COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/oracle/${oracle}_oracle.py ${LFD_PROGRAM_FOLDER}
                    ${LFD_DATA_DIR} ${CMAKE_SOURCE_DIR}/share/lfdtools)

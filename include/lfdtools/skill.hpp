@@ -166,6 +166,7 @@ struct Goal {
   Vector position;                 ///< D [m]
   std::optional<Vector> start;     ///< D [m]; the skill's own if empty
   std::optional<double> duration;  ///< tau [s]; the skill's own if empty
+  Matrix covariance = {};          ///< how sure the position is, D x D [m^2]; empty: exactly known
 };
 
 /// Predictions of one skill; the matrices are factorised once.

@@ -2,52 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "lfdtools/io/goals.hpp"
-#include "lfdtools/io/labelled_table.hpp"
+#include "lfdtools/parallel.hpp"
+#include "motion_goals.hpp"
+#include "motion_rows.hpp"
 
 namespace lfd::cli {
 namespace {
-
-Vector position(const std::vector<double>& numbers, std::size_t D, const char* option) {
-  if (numbers.size() != D) {
-    throw UsageError("usage.arity",
-                     fmt::format("{} takes {} numbers here, one a signal, not {}", option, D, numbers.size()));
-  }
-  return Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(D));
-}
-
-std::vector<Goal> goals_of(const MotionRequest& request, const std::vector<std::string>& columns, Run& run) {
-  std::vector<Goal> goals;
-  for (const auto& numbers : request.goals) {
-    Goal goal;
-    if (request.goals.size() > 1) goal.labels.target = fmt::format("{}", goals.size() + 1);
-    goal.position = position(numbers, columns.size(), "--goal");
-    goals.push_back(goal);
-  }
-  if (!request.goals_file.empty()) goals = read_goals(request.goals_file, columns, run.messages());
-  if (!request.target.empty() && !request.goals_file.empty()) {
-    std::erase_if(goals, [&](const Goal& goal) { return goal.labels.target != request.target; });
-    if (goals.empty()) throw UsageError("generate.no_target", fmt::format("no goal is of target '{}'", request.target));
-  }
-  for (auto& goal : goals) {
-    if (request.start) goal.start = position(*request.start, columns.size(), "--start");
-    if (request.duration) goal.duration = request.duration;
-  }
-  return goals;
-}
-
-std::vector<std::string> value_columns(const std::vector<std::string>& columns, bool derivatives) {
-  auto names = joined({"t"}, columns);
-  if (derivatives) names = joined(joined(names, prefixed("v_", columns)), prefixed("a_", columns));
-  return names;
-}
-
-void write_motion(LabelledTable& table, const Labels& labels, const Dmp& dmp, const MotionRequest& request) {
-  const Motion motion = generate(dmp, request.dt);
-  Samples rows = beside(motion.times, motion.positions);
-  if (request.derivatives) rows = beside(rows, beside(motion.velocities, motion.accelerations));
-  table.write(labels, rows);
-}
 
 void write_weights(LabelledTable& table, const Goal& goal, const WeightPrediction& weights,
                    const std::vector<std::string>& columns) {
@@ -64,69 +24,172 @@ void write_weights(LabelledTable& table, const Goal& goal, const WeightPredictio
   }
 }
 
-}  // namespace
+/// The answers to one request, goal by goal.
+class Answer {
+ public:
+  Answer(const SkillFile& file, const MotionRequest& request, const std::string& sha256, Run& run)
+      : file_(file),
+        request_(request),
+        run_(run),
+        predictor_(file.skill),
+        constraints_(constraints_of(request, file.skill.columns.size())),
+        changes_(changes_of(request, file.skill.columns.size())),
+        header_{file.skill.columns, {}, append(file.header.provenance, run.provenance(sha256))} {}
 
-void generate_from_skill(const SkillFile& file, const MotionRequest& request, Run& run) {
-  const Skill& skill = file.skill;
-  if (!request.target.empty() && request.goals_file.empty()) {
-    throw UsageError("generate.target", "--target chooses among the goals of --goals, or the primitives of a file");
+  void weights(const Goal& goal, LabelledTable& table) {
+    gates(goal);
+    write_weights(table, goal, predictor_.weights(predictor_.reach(goal)), file_.skill.columns);
   }
-  const auto goals = goals_of(request, skill.columns, run);
-  if (goals.empty()) throw UsageError("generate.no_goal", "a skill needs a goal: --goal X,Y,Z or --goals FILE");
-  const SkillPredictor predictor(skill);
-  LabelledTable table(run.output(), request.weights ? std::vector<std::string>{"signal", "basis", "mean", "sd"}
-                                                    : value_columns(skill.columns, request.derivatives));
-  for (const Goal& goal : goals) {
-    const std::string name = goal.labels.target ? describe(goal.labels) + ": " : std::string();
-    if (!goal.start && skill.start_spread > start_tolerance) {
-      run.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start"
-                                      "",
-                                      name, 1e3 * skill.start_spread));
+
+  void motion(const Goal& goal, std::size_t number, LabelledTable& table) {
+    gates(goal);
+    const std::string name = prefix_of(goal.labels);
+    MotionPosterior posterior;
+    if (!request_.needs_posterior().empty() || !constraints_.empty()) {
+      posterior = predict_motion(predictor_, goal, constraints_);
+      if (!constraints_.empty()) report_demands(posterior, name);
+    } else {
+      posterior.course.primitive = predictor_.primitive(goal);
     }
-    const Reach reach = predictor.reach(goal);
-    const double excess = region_excess(skill, reach);
+    Course& course = posterior.course;
+    for (GoalChange next : changes_) {
+      Goal later = goal;
+      later.position = next.goal;
+      gates(later);
+      next.weights = predictor_.primitive(later).weights;
+      course.changes.push_back(next);
+    }
+    report_duration(goal, course, name);
+    const Motion mean = generate(course, request_.dt);
+    if (request_.approach) report_approach(course, mean, name, request_, run_);
+    GoalSpread from_goal;
+    if (!request_.sd.empty() || request_.band || request_.max_sd || !request_.covariance.empty()) {
+      from_goal = goal_spread(predictor_, goal, constraints_, mean.times);
+    }
+    if (request_.max_sd) gate_sd(posterior, mean.times, from_goal, name);
+    if (!request_.covariance.empty()) {
+      header_.labels = goal.labels;
+      if (covariance_ == nullptr) covariance_ = &run_.beside(request_.covariance);
+      write_covariance_of(posterior, mean, from_goal, header_, request_, *covariance_);
+    }
+    if (request_.samples > 0) return draws(posterior, goal, number, table);
+    Samples rows = rows_of(mean, request_);
+    const Samples more = from_goal.variance(mean.positions);
+    if (!request_.sd.empty()) {
+      const Samples sd = standard_deviation(posterior, mean.times, request_.spread());
+      rows = beside(rows, (sd.array().square() + more.array()).sqrt());
+    }
+    if (request_.band) {
+      const Samples half = motion_band(predictor_, posterior, mean.times, *request_.band);
+      rows = beside(rows, (half.array().square() + 1.959963984540054 * 1.959963984540054 * more.array()).sqrt());
+    }
+    table.write(goal.labels, rows);
+  }
+
+ private:
+  void gates(const Goal& goal) {
+    const Skill& skill = file_.skill;
+    const std::string name = prefix_of(goal.labels);
+    if (!goal.start && skill.start_spread > start_tolerance) {
+      run_.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start",
+                                       name, 1e3 * skill.start_spread));
+    }
+    const double excess = region_excess(skill, predictor_.reach(goal));
     if (excess > 0) {
-      run.refuse(
+      run_.refuse(
           "region",
           fmt::format(
               "{}the goal lies {:.1f} mm outside the demonstrated region (range of goal - start, and of the start, "
               "widened by a tenth)",
               name, 1e3 * excess));
     }
-    if (request.weights) {
-      write_weights(table, goal, predictor.weights(reach), skill.columns);
-    } else {
-      write_motion(table, goal.labels, predictor.primitive(goal), request);
+  }
+
+  void gate_sd(const MotionPosterior& posterior, const Vector& times, const GoalSpread& goal, const std::string& name) {
+    Samples variance = standard_deviation(posterior, times, Spread::predictive).array().square();
+    variance += goal.variance(variance);
+    Eigen::Index at = 0;
+    Eigen::Index signal = 0;
+    const double largest = std::sqrt(variance.maxCoeff(&at, &signal));
+    run_.figure("sd", largest);
+    if (largest > *request_.max_sd) {
+      run_.refuse("sd", fmt::format("{}a motion's predictive sd is {:.2f} mm, over {:.2f} mm, in {} at {:.3f} s", name,
+                                    1e3 * largest, 1e3 * *request_.max_sd,
+                                    file_.skill.columns[static_cast<std::size_t>(signal)], times[at]));
     }
   }
-}
 
-void replay(std::vector<DmpFile> files, const MotionRequest& request, Run& run) {
-  if (!request.target.empty()) {
-    std::erase_if(files, [&](const DmpFile& file) { return file.header.labels.target != request.target; });
+  void report_demands(const MotionPosterior& posterior, const std::string& name) {
+    const auto D = static_cast<double>(file_.skill.columns.size());
+    const double count = D * (static_cast<double>(constraints_.via.size()) + (constraints_.end_velocity ? 1 : 0));
+    run_.figure("demand_distance", posterior.distance);
+    const std::string text = fmt::format(
+        "{}the demands lie {:.2f} standard deviations (Mahalanobis) from the motion "
+        "predicted without them",
+        name, posterior.distance);
+    if (posterior.distance > 4 * std::sqrt(std::max(1.0, count))) {
+      run_.messages().warning("generate.far_demand", text + ": no demonstration says that this may be done");
+    } else {
+      run_.detail("generate.demand", text);
+    }
   }
-  if (files.empty())
-    throw UsageError("generate.no_target", fmt::format("no primitive is of target '{}'", request.target));
-  if (files.size() > 1) {
-    throw UsageError("generate.which", fmt::format("{} primitives: --target says which one to replay", files.size()));
+
+  void report_duration(const Goal& goal, const Course& course, const std::string& name) {
+    const double tau = course.primitive.tau;
+    const double sd = goal.duration ? 0.0 : file_.skill.duration.sd;
+    run_.figure("duration", tau);
+    run_.figure("duration_sd", sd);
+    run_.detail("generate.duration",
+                goal.duration ? fmt::format("{}duration {:.4g} s, as given", name, tau)
+                              : fmt::format("{}duration {:.4g} s, sd {:.2g} s of a demonstration", name, tau, sd));
   }
-  if (request.weights)
-    throw UsageError("generate.weights", "--weights needs a skill; a primitive's weights are in its file");
-  const DmpFile& file = files.front();
-  MotionRequest rest = request;
-  rest.target.clear();
-  auto goals = goals_of(rest, file.header.columns, run);
-  if (goals.empty()) {
-    goals.push_back({file.header.labels, file.dmp.goal, {}, request.duration});
-    if (request.start) goals.back().start = position(*request.start, file.header.columns.size(), "--start");
+
+  /// Draw i of goal number `number` has a stream of its own, so neither -j nor the other goals matter.
+  void draws(const MotionPosterior& posterior, const Goal& goal, std::size_t number, LabelledTable& table) {
+    constexpr std::size_t at_once = 256;
+    const Random stream = Random(run_.seed()).split(number);
+    const auto total = static_cast<std::size_t>(request_.samples);
+    for (std::size_t first = 0; first < total; first += at_once) {
+      std::vector<Samples> rows(std::min(at_once, total - first));
+      parallel_for(rows.size(), run_.jobs(), [&](std::size_t i) {
+        Random random = stream.split(first + i);
+        rows[i] = rows_of(generate(draw(posterior, request_.spread(), random), request_.dt), request_);
+      });
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        Labels labels = goal.labels;
+        labels.sample = fmt::format("{}", first + i + 1);
+        table.write(labels, rows[i]);
+      }
+    }
   }
-  LabelledTable table(run.output(), value_columns(file.header.columns, request.derivatives));
-  for (const Goal& goal : goals) {
-    Dmp dmp = file.dmp;
-    dmp.goal = goal.position;
-    dmp.start = goal.start.value_or(dmp.start);
-    dmp.tau = goal.duration.value_or(dmp.tau);
-    write_motion(table, goal.labels, dmp, request);
+
+  const SkillFile& file_;
+  const MotionRequest& request_;
+  Run& run_;
+  SkillPredictor predictor_;
+  MotionConstraints constraints_;
+  std::vector<GoalChange> changes_;
+  FileHeader header_;
+  Output* covariance_ = nullptr;
+};
+
+}  // namespace
+
+void generate_from_skill(const SkillFile& file, const MotionRequest& request, const std::string& sha256, Run& run) {
+  if (!request.target.empty() && request.goals_file.empty()) {
+    throw UsageError("generate.target", "--target chooses among the goals of --goals, or the primitives of a file");
+  }
+  const auto& columns = file.skill.columns;
+  const auto goals = goals_of(request, columns, run);
+  if (goals.empty()) throw UsageError("generate.no_goal", "a skill needs a goal: --goal X,Y,Z or --goals FILE");
+  if (!request.goal_at.empty() && goals.size() > 1) {
+    throw UsageError("generate.one_goal", "--goal-at moves one goal, and here are several");
+  }
+  Answer answer(file, request, sha256, run);
+  LabelledTable table(run.output(), request.weights ? std::vector<std::string>{"signal", "basis", "mean", "sd"}
+                                                    : value_columns(columns, request));
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    request.weights ? answer.weights(goals[i], table) : answer.motion(goals[i], i, table);
   }
 }
 

@@ -15,13 +15,19 @@ namespace lfd::cli {
 namespace {
 
 /// `--trim 0.1` as well as `--trim=0.1`: CLI11 would take the number for a file.
-std::vector<std::string> arguments_of(int argc, char** argv, const std::vector<std::string>& optional_values) {
+std::vector<std::string> arguments_of(int argc, char** argv, const std::vector<std::string>& optional_values,
+                                      const std::map<std::string, std::vector<std::string>>& optional_words) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
     double value = 0;
     if (std::find(optional_values.begin(), optional_values.end(), word) != optional_values.end() && i + 1 < argc &&
         parse_number(argv[i + 1], value) == NumberFault::none) {
+      word += std::string("=") + argv[++i];
+    }
+    const auto known = optional_words.find(word);
+    if (known != optional_words.end() && i + 1 < argc &&
+        std::find(known->second.begin(), known->second.end(), argv[i + 1]) != known->second.end()) {
       word += std::string("=") + argv[++i];
     }
     words.push_back(word);
@@ -230,7 +236,7 @@ int Program::run(int argc, char** argv, const std::function<void(Run&)>& body) {
     if (!impl_->gates.empty()) footer += "\nGates (exit 1):\n" + impl_->gate_lines;
     app.footer(footer + "\nExamples:\n" + impl_->examples);
     try {
-      app.parse(arguments_of(argc, argv, impl_->optional_values));
+      app.parse(arguments_of(argc, argv, impl_->optional_values, impl_->optional_words));
     } catch (const CLI::ParseError& error) {
       if (app.count("--help") == 0 && app.count("--version") == 0) {
         throw usage_error(error);

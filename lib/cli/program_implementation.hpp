@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct Program::Implementation {
   std::string topics;
   std::string examples;
   std::vector<std::function<void()>> checks;
-  std::vector<std::string> optional_values;                               // options whose value may be left out
+  std::vector<std::string> optional_values;                               // options whose number may be left out
+  std::map<std::string, std::vector<std::string>> optional_words;         // the same, and the words they take
   std::vector<std::function<void(std::vector<std::string>&)>> recorders;  // append canonical arguments
 
   Implementation(const std::string& program, const std::string& purpose) : name(program), app(purpose, program) {}

@@ -101,6 +101,26 @@ Program& Program::number_or_default(const std::string& names, std::optional<doub
   return *this;
 }
 
+Program& Program::word_or_default(const std::string& names, std::string& value, const std::string& otherwise,
+                                  const std::vector<std::string>& words, const std::string& doc) {
+  auto text = std::make_shared<std::string>();
+  auto* option = impl_->app.add_flag(names, *text, doc);
+  const std::string all = fmt::format("{}", fmt::join(words, "|"));
+  option->multi_option_policy(CLI::MultiOptionPolicy::Throw)->type_name("[=" + all + "]");
+  impl_->optional_words[long_name(names)] = words;
+  impl_->checks.push_back([=, &value] {
+    if (option->count() == 0) return;
+    if (*text == "true") *text = otherwise;
+    if (std::find(words.begin(), words.end(), *text) == words.end()) {
+      throw UsageError("usage.value",
+                       fmt::format("{} takes {}, not '{}'", long_name(names), fmt::join(words, ", "), *text));
+    }
+    value = *text;
+  });
+  impl_->record(option, text, "");
+  return *this;
+}
+
 Program& Program::numbers(const std::string& names, std::optional<std::vector<double>>& value,
                           std::vector<std::size_t> arities, const std::string& doc) {
   impl_->add(names, "X,...", "", doc, [=, &value](const std::string& word) {

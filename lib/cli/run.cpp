@@ -39,6 +39,11 @@ Output& Run::output() {
   return *output_;
 }
 
+Output& Run::beside(const std::string& path) {
+  beside_.push_back(std::make_unique<Output>(path));
+  return *beside_.back();
+}
+
 Provenance Run::provenance(std::string input_sha256) const {
   Provenance entry = provenance_;
   entry.input_sha256 = std::move(input_sha256);
@@ -85,6 +90,7 @@ void Run::finish() {
                   {options_.summary, 1, 0, ""});
     }
   }
+  for (const auto& output : beside_) output->finish();
   if (output_) output_->finish();
   if (!options_.summary.empty()) append_record(options_.summary, header + "\n", row + "\n");
 }

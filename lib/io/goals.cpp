@@ -18,15 +18,21 @@ std::vector<Goal> read_goals(Input input, const std::vector<std::string>& signal
   std::vector<Input> inputs;
   inputs.push_back(std::move(input));
   const CsvTable table(std::move(inputs), messages, {.grouped = false});
+  const auto all_or_none = [&](const std::vector<std::string>& names, const char* id, const char* what) {
+    const auto count = std::count_if(names.begin(), names.end(), [&](const auto& s) { return table.has(s); });
+    if (count != 0 && count != static_cast<std::ptrdiff_t>(names.size())) {
+      throw DataError(id, fmt::format("some signals have {} column and others have none", what), {name, 1, 0, ""});
+    }
+    return count > 0;
+  };
   const auto starts = prefixed("start_", signals);
-  const auto start_columns = std::count_if(starts.begin(), starts.end(), [&](const auto& s) { return table.has(s); });
-  if (start_columns != 0 && start_columns != static_cast<std::ptrdiff_t>(starts.size())) {
-    throw DataError("goals.partial_start", "some signals have a start_ column and others have none", {name, 1, 0, ""});
-  }
-  const bool with_start = start_columns > 0;
+  const auto sds = prefixed("sd_", signals);
+  const bool with_start = all_or_none(starts, "goals.partial_start", "a start_");
+  const bool with_sd = all_or_none(sds, "goals.partial_sd", "an sd_");
   const bool with_duration = table.has("duration");
   auto columns = signals;
   if (with_start) columns = joined(columns, starts);
+  if (with_sd) columns = joined(columns, sds);
   if (with_duration) columns.emplace_back("duration");
   std::string unused;
   for (const auto& column : table.columns()) {
@@ -53,6 +59,13 @@ std::vector<Goal> read_goals(Input input, const std::vector<std::string>& signal
     }
     goal.position = block.values.row(row).head(D).transpose();
     if (with_start) goal.start = block.values.row(row).segment(D, D).transpose();
+    if (with_sd) {
+      const Vector sd = block.values.row(row).segment(with_start ? 2 * D : D, D).transpose();
+      if (!(sd.array() >= 0).all()) {
+        throw DataError("goals.sd", "a standard deviation is negative", block.place(row));
+      }
+      goal.covariance = sd.array().square().matrix().asDiagonal();
+    }
     if (with_duration) {
       goal.duration = block.values(row, block.values.cols() - 1);
       if (!(*goal.duration > 0)) throw DataError("goals.duration", "a duration is not positive", block.place(row));

@@ -62,6 +62,9 @@ class Program {
   /// A number that may be left out after its option (`--trim` or `--trim=0.1`).
   Program& number_or_default(const std::string& names, std::optional<double>& value, double otherwise,
                              Range<double> range, const std::string& doc);
+  /// A word that may be left out after its option (`--sd`, `--sd=latent` or `--sd latent`).
+  Program& word_or_default(const std::string& names, std::string& value, const std::string& otherwise,
+                           const std::vector<std::string>& words, const std::string& doc);
   /// Comma-separated numbers, as many as one of `arities` says (none: any number of them).
   Program& numbers(const std::string& names, std::optional<std::vector<double>>& value,
                    std::vector<std::size_t> arities, const std::string& doc);

@@ -49,6 +49,8 @@ class Run {
   [[nodiscard]] std::vector<Input> open() const { return open_inputs(options_.inputs); }
   /// The output of the command line, opened at the first call; handed over when the body has returned.
   Output& output();
+  /// One more output, a file that an option names; handed over together with the other.
+  Output& beside(const std::string& path);
 
   /// This program's entry for the files it writes.
   [[nodiscard]] Provenance provenance(std::string input_sha256) const;
@@ -68,6 +70,7 @@ class Run {
   Messages& messages_;
   Provenance provenance_;
   std::unique_ptr<Output> output_;
+  std::vector<std::unique_ptr<Output>> beside_;
   std::vector<std::pair<std::string, double>> figures_;
 };
 

@@ -12,7 +12,9 @@ _lfdtools_options() {
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
-    skill-generate) echo "$common $gates --goal --goals --target --start --duration --dt --weights --derivatives" ;;
+    skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
+                         "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
+                         "--band --samples --covariance --max-sd" ;;
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --repetitions --trim" \
                          "-n --basis -k --components --table --reliability" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
@@ -50,7 +52,10 @@ _lfdtools_words() {
     *:--robot) echo "ur10 ur10e" ;;
     *:--frame) echo "base base_link" ;;
     dmp-fit:--no-gate) echo "goal_change" ;;
-    skill-generate:--no-gate) echo "region start" ;;
+    skill-generate:--no-gate) echo "region start sd" ;;
+    skill-generate:--sd) echo "latent predictive" ;;
+    skill-generate:--band) echo "pointwise path" ;;
+    skill-generate:--via | skill-generate:--goal-at | skill-generate:--*-velocity | skill-generate:--approach) return 2 ;;
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;

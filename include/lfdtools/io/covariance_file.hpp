@@ -1,0 +1,23 @@
+// How far a generated motion may be off, as files, format lfdtools.covariance.
+#pragma once
+
+#include "lfdtools/io/provenance.hpp"
+#include "lfdtools/posterior.hpp"
+
+namespace lfd {
+
+/// The spread of one motion.
+struct CovarianceFile {
+  FileHeader header;  ///< columns: D signals
+  Spread spread = Spread::latent;
+  Vector degrees_of_freedom;       ///< D, of the Student-t of each signal; infinite ones are written as null
+  Vector times;                    ///< T [s]
+  Samples mean;                    ///< T x D [m]
+  std::vector<Matrix> covariance;  ///< D of T x T, or one D T x D T, by signal, then by time [m^2]
+};
+
+/// One line.
+/// @throws DataError [covariance.too_large] over 2 10^7 numbers: a larger time step makes fewer
+void write_covariance(const CovarianceFile& file, Output& out);
+
+}  // namespace lfd
