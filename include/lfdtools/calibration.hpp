@@ -48,7 +48,8 @@ enum class BandKind {
 /// (sum of squared errors) / (sum of unit variances) - latent - noise / rows, at least 0. The factors are quantiles of
 /// |error| / sd: `pointwise` over all samples and axes, `path` over the targets' greatest, with the rank
 /// ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability m / (m + 1)
-/// when that rank is over m.
+/// when that rank is over m. Both times t / z, the quantiles of Student-t with m - 1 degrees of freedom and of the
+/// normal distribution, because the sd was itself measured on m targets.
 /// @return empty with fewer than three targets that differ
 /// @throws those of train_skill
 /// @param rows, options  those that the skill was trained with
