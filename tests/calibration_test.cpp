@@ -134,8 +134,10 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
   }
   CHECK((calibration->target_variance - effect.cwiseMax(0.0)).norm() < 1e-6 * effect.norm());
   std::sort(greatest.begin(), greatest.end());
-  CHECK(calibration->path[4] == Approx(greatest[2]).epsilon(1e-6));   // level 0.5: rank ceil(6 * 0.5) = 3
-  CHECK(calibration->path[10] == Approx(greatest[4]).epsilon(1e-6));  // level 0.99: rank 6 is over 5
+  // Level 0.5: rank ceil(6 * 0.5) = 3; level 0.99: rank 6 is over 5. t over z with four degrees of freedom, from
+  // tables.
+  CHECK(calibration->path[4] == Approx(greatest[2] * 0.740697 / 0.674490).epsilon(1e-5));
+  CHECK(calibration->path[10] == Approx(greatest[4] * 4.604095 / 2.575829).epsilon(1e-5));
 }
 
 TEST_CASE("bands hold what they promise on new targets of the same kind") {

@@ -370,7 +370,8 @@ TEST_CASE("the band of a motion is the calibration's where there is one, and nar
   const MotionPosterior plain = predict_motion(full(), some_goal());
   CHECK(motion_band(full(), plain, times, BandKind::pointwise) == band(plain, times, BandKind::pointwise));
   Skill skill = full().skill();
-  skill.calibration = Calibration{9, 0.01, Vector::Constant(3, 1e-4), linspace(0.5, 0.95, 2), Vector(2), Vector(2)};
+  skill.calibration = Calibration{
+      9, Vector::Constant(3, 0.01), Vector::Constant(3, 1e-4), linspace(0.5, 0.95, 2), Vector(2), Vector(2)};
   skill.calibration->pointwise << 0.8, 2.4;
   skill.calibration->path << 1.5, 3.0;
   const SkillPredictor calibrated(skill);

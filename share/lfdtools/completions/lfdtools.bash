@@ -11,7 +11,8 @@ _lfdtools_options() {
                   "--bic-likelihood --restarts" ;;
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
-    mvgpr-train) echo "$common -j --jobs --seed --paper --model --kernel --mean --omega --starts" ;;
+    mvgpr-train) echo "$common -j --jobs --seed --paper --model --inputs --kernel --mean --omega" \
+                      "--calibration --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
@@ -40,8 +41,10 @@ _lfdtools_words() {
     dmp-fit:--scaling) echo "none goal" ;;
     dmp-fit:--fit) echo "trajectory ls lwr" ;;
     mvgpr-train:--model) echo "auto axis full joint" ;;
-    mvgpr-train:--kernel) echo "auto sum se-ard matern32 matern52" ;;
-    mvgpr-train:--mean) echo "zero constant linear" ;;
+    mvgpr-train:--kernel) echo "auto additive sum se-ard matern32 matern52" ;;
+    mvgpr-train:--mean) echo "auto zero constant linear line" ;;
+    mvgpr-train:--inputs) echo "auto change change+start" ;;
+    mvgpr-train:--calibration) echo "targets none" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
     skill-validate:--methods) echo "skill skill-axis skill-full skill-joint paper paper-full line nearest" \
                                    "nearest-deviation mean mean-deviation moved-goal affine affine-means" \
