@@ -87,17 +87,21 @@ Kernel additive_kernel(const std::vector<std::vector<int>>& groups) {
   return kernel;
 }
 
+Kernel sum_kernel(const std::vector<std::vector<int>>& groups) {
+  Kernel kernel = additive_kernel(groups);
+  const auto& first = groups.front();
+  if (first.size() > 1) {
+    kernel.terms.push_back({KernelType::se_ard, 1, first, Vector::Ones(static_cast<Eigen::Index>(first.size()))});
+  }
+  return kernel;
+}
+
 Kernel additive_kernel(int p) {
   return additive_kernel(std::vector<std::vector<int>>{se_ard_kernel(p).terms.front().inputs});
 }
 
 Kernel sum_kernel(int p) {
-  Kernel kernel = additive_kernel(p);
-  for (auto& term : kernel.terms) {
-    if (term.type == KernelType::matern32) term.type = KernelType::se_ard;
-  }
-  if (p > 1) kernel.terms.push_back(se_ard_kernel(p).terms.front());
-  return kernel;
+  return sum_kernel(std::vector<std::vector<int>>{se_ard_kernel(p).terms.front().inputs});
 }
 
 void check_kernel(const Kernel& kernel, int p) {

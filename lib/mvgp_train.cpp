@@ -105,7 +105,7 @@ MvgpOptions paper_mvgp_options(int p) {
 
 MvgpOptions default_mvgp_options(int p) {
   MvgpOptions options;
-  options.kernel = additive_kernel(p);
+  options.kernel = sum_kernel(p);
   options.length_scale = {1.0, 1.0};
   options.variance = {0.3, 2.0};
   options.noise = {0.03, 2.0};
@@ -125,7 +125,7 @@ std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::
     model.X = X;
     model.Y = A.size() > 0 ? Matrix(W[g] * A) : W[g];
     model.output_transform = A;
-    model.kernel = options.kernel.terms.empty() ? additive_kernel(static_cast<int>(X.cols())) : options.kernel;
+    model.kernel = options.kernel.terms.empty() ? sum_kernel(static_cast<int>(X.cols())) : options.kernel;
     check_kernel(model.kernel, static_cast<int>(X.cols()));
     model.mean = options.mean;
     if (known)

@@ -56,29 +56,30 @@ std::vector<SkillModel> structure(SkillStructure wanted, bool paper, bool starts
   return models;
 }
 
-/// The additive kernel; changes and starts have a linear term each, for their ranges have nothing to do with each
-/// other.
-Kernel additive_kernel_of(const SkillModel& model, int D) {
+/// Inputs of a model, changes and starts apart: their ranges have nothing to do with each other.
+std::vector<std::vector<int>> input_groups(const SkillModel& model, int D) {
   std::vector<std::vector<int>> groups(1);
   for (int i = 0; i < static_cast<int>(model.inputs.size()); ++i) {
     const bool start = model.inputs[static_cast<std::size_t>(i)] >= D;
     if (start && groups.size() == 1) groups.emplace_back();
     groups[start ? 1 : 0].push_back(i);
   }
-  return additive_kernel(groups);
+  return groups;
 }
 
 MvgpOptions process_options(const SkillOptions& options, const SkillModel& model, int D) {
   const int p = static_cast<int>(model.inputs.size());
   MvgpOptions process = options.paper ? paper_mvgp_options(p) : default_mvgp_options(p);
-  if (options.kernel == SkillKernel::sum) {
-    process.kernel = sum_kernel(p);
-  } else if (options.kernel == SkillKernel::additive || (options.kernel == SkillKernel::automatic && !options.paper)) {
-    process.kernel = additive_kernel_of(model, D);
-  } else if (options.kernel != SkillKernel::automatic) {
+  SkillKernel wanted = options.kernel;
+  if (wanted == SkillKernel::automatic) wanted = options.paper ? SkillKernel::se_ard : SkillKernel::sum;
+  if (wanted == SkillKernel::sum) {
+    process.kernel = sum_kernel(input_groups(model, D));
+  } else if (wanted == SkillKernel::additive) {
+    process.kernel = additive_kernel(input_groups(model, D));
+  } else {
     process.kernel = se_ard_kernel(p);
-    if (options.kernel == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
-    if (options.kernel == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
+    if (wanted == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
+    if (wanted == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
   }
   process.omega = options.omega;
   process.starts = options.starts;

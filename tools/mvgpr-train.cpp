@@ -30,15 +30,16 @@ int main(int argc, char** argv) {
                   {"change+start", SkillInputs::change_and_start}},
                  "goal - start alone, or the start as well; auto: as well where starts differ by over 20 mm, but not "
                  "with --paper");
-  program.choice("--kernel", options.kernel,
-                 {{"auto", SkillKernel::automatic},
-                  {"additive", SkillKernel::additive},
-                  {"sum", SkillKernel::sum},
-                  {"se-ard", SkillKernel::se_ard},
-                  {"matern32", SkillKernel::matern32},
-                  {"matern52", SkillKernel::matern52}},
-                 "covariance function; additive (auto, but se-ard with --paper): constant + linear + matern32 an "
-                 "input; sum: constant + linear + se-ard an input + se-ard over all");
+  program.choice(
+      "--kernel", options.kernel,
+      {{"auto", SkillKernel::automatic},
+       {"sum", SkillKernel::sum},
+       {"additive", SkillKernel::additive},
+       {"se-ard", SkillKernel::se_ard},
+       {"matern32", SkillKernel::matern32},
+       {"matern52", SkillKernel::matern52}},
+      "covariance function; sum (auto, but se-ard with --paper): constant + linear + matern32 an input + se-ard "
+      "over goal - start; additive: without the last");
   program.choice("--mean", options.mean,
                  {{"auto", SkillMean::automatic},
                   {"zero", SkillMean::zero},

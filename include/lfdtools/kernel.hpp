@@ -44,8 +44,10 @@ struct Kernel {
 /// All inputs in one group.
 [[nodiscard]] Kernel additive_kernel(int p);
 
-/// constant + linear + one se-ard term an input + one over all inputs (left out when p = 1); variances and length
-/// scales 1.
+/// The additive kernel + one se-ard term over the first group (left out where that is one input): what inputs do only
+/// together.
+[[nodiscard]] Kernel sum_kernel(const std::vector<std::vector<int>>& groups);
+/// All inputs in one group.
 [[nodiscard]] Kernel sum_kernel(int p);
 
 /// Refuses a kernel that cannot be used with p inputs.

@@ -34,7 +34,7 @@ struct LogNormalPrior {
 
 struct MvgpOptions {
   /// Terms to use; their length scales and free variances are starting values, found from the data when `optimise` is
-  /// set. No terms: `additive_kernel`.
+  /// set. No terms: `sum_kernel`.
   Kernel kernel;
   double noise_variance = 0.01;  ///< used as it is when `optimise` is not set
   MeanType mean = MeanType::zero;
@@ -61,7 +61,7 @@ struct MvgpOptions {
 /// The published formulation: se-ard, zero mean, no priors, Omega integrated with Psi = mean square of Y times I.
 [[nodiscard]] MvgpOptions paper_mvgp_options(int p);
 
-/// The default: `additive_kernel`, zero mean (the constant and linear terms are a linear mean with a proper prior),
+/// The default: `sum_kernel`, zero mean (the constant and linear terms are a linear mean with a proper prior),
 /// weak priors on all hyperparameters.
 [[nodiscard]] MvgpOptions default_mvgp_options(int p);
 

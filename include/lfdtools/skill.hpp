@@ -51,9 +51,9 @@ inline constexpr double start_tolerance = 0.02;
 
 /// Covariance functions to choose from.
 enum class SkillKernel {
-  automatic,  ///< `additive`; with SkillOptions::paper `se_ard`
-  additive,   ///< constant + linear + matern32 an input
-  sum,        ///< constant + linear + se-ard an input + se-ard over all inputs
+  automatic,  ///< `sum`; with SkillOptions::paper `se_ard`
+  sum,        ///< constant + linear + matern32 an input + se-ard over dP
+  additive,   ///< the same without the last term: each input acts for itself
   se_ard,     ///< one term over all inputs, as the others below
   matern32,
   matern52

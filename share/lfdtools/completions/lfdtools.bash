@@ -41,7 +41,7 @@ _lfdtools_words() {
     dmp-fit:--scaling) echo "none goal" ;;
     dmp-fit:--fit) echo "trajectory ls lwr" ;;
     mvgpr-train:--model) echo "auto axis full joint" ;;
-    mvgpr-train:--kernel) echo "auto additive sum se-ard matern32 matern52" ;;
+    mvgpr-train:--kernel) echo "auto sum additive se-ard matern32 matern52" ;;
     mvgpr-train:--mean) echo "auto zero constant linear line" ;;
     mvgpr-train:--inputs) echo "auto change change+start" ;;
     mvgpr-train:--calibration) echo "targets none" ;;
