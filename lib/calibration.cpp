@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lfdtools/gaussian.hpp"
 #include "lfdtools/parallel.hpp"
@@ -38,6 +39,13 @@ std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vect
   return rest;
 }
 
+/// Targets without which there is still something to learn from.
+std::vector<std::vector<std::size_t>> groups_to_leave_out(const std::vector<SkillRow>& rows) {
+  auto groups = by_target(rows);
+  std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
+  return groups;
+}
+
 /// What was missed on one target.
 struct Miss {
   Samples error;  // phase_count x D [m]
@@ -45,25 +53,37 @@ struct Miss {
   double repetitions = 1;
 };
 
+/// Mean reach of the rows of a target.
+Reach mean_reach(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group, const Vector& usual_start) {
+  Reach reach(Vector::Zero(usual_start.size()), -usual_start);
+  for (const std::size_t i : group) {
+    reach.change += rows[i].change() / static_cast<double>(group.size());
+    reach.offset += rows[i].primitive.start / static_cast<double>(group.size());
+  }
+  return reach;
+}
+
+/// Predicted path less the mean path of a target, phase_count x D [m]. The mean of the free responses is the free
+/// response to the mean change, so what differs is the forced part alone.
+Samples error_on(const SkillPredictor& predictor, const std::vector<SkillRow>& rows,
+                 const std::vector<std::size_t>& group, const Matrix& R) {
+  const Reach reach = mean_reach(rows, group, predictor.skill().start);
+  Matrix force = predictor.weights(reach).mean;
+  if (predictor.skill().dmp.scaling == DmpScaling::goal) force = reach.change.asDiagonal() * force;
+  for (const std::size_t i : group) {
+    const Dmp& row = rows[i].primitive;
+    force -= row.scale().asDiagonal() * row.weights / static_cast<double>(group.size());
+  }
+  return R * force.transpose();
+}
+
 /// @param searched  gives the error   @param known  the same rows under the skill's own hyperparameters: gives the sd
 Miss miss(const SkillPredictor& searched, const SkillPredictor& known, const std::vector<SkillRow>& rows,
           const std::vector<std::size_t>& group, const Matrix& R) {
   Miss result;
   result.repetitions = static_cast<double>(group.size());
-  const Dmp& any = rows[group.front()].primitive;
-  Reach reach(Vector::Zero(any.dimensions()), -known.skill().start);
-  Matrix force = Matrix::Zero(any.dimensions(), any.settings.bases());  // mean of s w
-  for (const std::size_t i : group) {
-    const Dmp& row = rows[i].primitive;
-    reach.change += rows[i].change() / result.repetitions;
-    reach.offset += row.start / result.repetitions;
-    force += row.scale().asDiagonal() * row.weights / result.repetitions;
-  }
-  Matrix predicted = searched.weights(reach).mean;
-  if (any.settings.scaling == DmpScaling::goal) predicted = reach.change.asDiagonal() * predicted;
-  // The mean of the free responses is the free response to the mean change, so what differs is the forced part alone.
-  result.error = R * (force - predicted).transpose();
-  result.variance = position_variance(known, reach, linspace(0, 1, phase_count));
+  result.error = error_on(searched, rows, group, R);
+  result.variance = position_variance(known, mean_reach(rows, group, known.skill().start), linspace(0, 1, phase_count));
   return result;
 }
 
@@ -161,10 +181,30 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
   return factor(*calibration, kind, level) * total.cwiseSqrt();
 }
 
+SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                          const SkillOptions& options) {
+  if (options.kernel != SkillKernel::automatic || options.paper) return options.kernel;
+  const auto groups = groups_to_leave_out(rows);
+  if (groups.size() < 3) return SkillKernel::sum;
+  const Matrix R = response_matrix(rows.front().primitive.settings, 1.0, linspace(0, 1, phase_count));
+  const auto error = [&](SkillKernel kernel) {
+    SkillOptions inner = options;
+    inner.kernel = kernel;
+    inner.starts = 1;
+    inner.jobs = 1;
+    std::vector<double> squares(groups.size());
+    parallel_for(groups.size(), options.jobs, [&](std::size_t g) {
+      const SkillPredictor predictor(train_skill(columns, without(rows, groups[g]), inner));
+      squares[g] = error_on(predictor, rows, groups[g], R).squaredNorm();
+    });
+    return std::accumulate(squares.begin(), squares.end(), 0.0);
+  };
+  return error(SkillKernel::additive) < error(SkillKernel::sum) ? SkillKernel::additive : SkillKernel::sum;
+}
+
 std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
                                      const SkillOptions& options) {
-  auto groups = by_target(rows);
-  std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
+  const auto groups = groups_to_leave_out(rows);
   if (groups.size() < 3) return {};
   SkillOptions searching = options;
   searching.starts = 1;

@@ -15,8 +15,9 @@ std::vector<std::string> signal_names(Eigen::Index D) {
 }
 
 /// @param rows_are_means  a row is a mean of demonstrations already, so its noise is that of a mean
-Predictor learnt(const std::vector<SkillRow>& rows, const SkillOptions& options, bool rows_are_means) {
+Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
   const auto names = signal_names(rows.front().primitive.dimensions());
+  options.kernel = choose_kernel(names, rows, options);
   Skill trained = train_skill(names, rows, options);
   trained.calibration = calibrate(trained, rows, options);
   const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));

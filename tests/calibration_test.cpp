@@ -199,3 +199,29 @@ TEST_CASE("too few targets that differ are not calibrated") {
   }
   CHECK_FALSE(calibrate(train_skill(xy, rows), rows, {}));
 }
+
+TEST_CASE("the kernel is chosen by targets left out: inputs that act together need their common term") {
+  std::vector<SkillRow> rows;
+  DmpFitOptions fit;
+  fit.bases = 8;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      Vector goal(2);
+      goal << 0.3 + 0.1 * i, 0.1 + 0.1 * k;
+      const Vector line = phases.array().cube() * (10 + phases.array() * (-15 + 6 * phases.array()));
+      Samples path = line * goal.transpose();
+      const double together = 4 * (goal[0] - 0.45) * (goal[1] - 0.25);  // no sum of functions of one input each
+      path.col(0).array() += together * (std::numbers::pi * phases.array()).sin().square();
+      rows.push_back({{std::to_string(4 * i + k), {}, {}, {}}, fit_dmp({2 * phases, path}, fit)});
+    }
+  }
+  CHECK(choose_kernel(xy, rows, {}) == SkillKernel::sum);
+  SkillOptions options;
+  options.kernel = SkillKernel::matern52;
+  CHECK(choose_kernel(xy, rows, options) == SkillKernel::matern52);
+  options = {};
+  options.paper = true;
+  CHECK(choose_kernel(xy, rows, options) == SkillKernel::automatic);
+  rows.resize(2);
+  CHECK(choose_kernel(xy, rows, {}) == SkillKernel::sum);
+}

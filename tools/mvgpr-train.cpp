@@ -30,16 +30,16 @@ int main(int argc, char** argv) {
                   {"change+start", SkillInputs::change_and_start}},
                  "goal - start alone, or the start as well; auto: as well where starts differ by over 20 mm, but not "
                  "with --paper");
-  program.choice(
-      "--kernel", options.kernel,
-      {{"auto", SkillKernel::automatic},
-       {"sum", SkillKernel::sum},
-       {"additive", SkillKernel::additive},
-       {"se-ard", SkillKernel::se_ard},
-       {"matern32", SkillKernel::matern32},
-       {"matern52", SkillKernel::matern52}},
-      "covariance function; sum (auto, but se-ard with --paper): constant + linear + matern32 an input + se-ard "
-      "over goal - start; additive: without the last");
+  program.choice("--kernel", options.kernel,
+                 {{"auto", SkillKernel::automatic},
+                  {"sum", SkillKernel::sum},
+                  {"additive", SkillKernel::additive},
+                  {"se-ard", SkillKernel::se_ard},
+                  {"matern32", SkillKernel::matern32},
+                  {"matern52", SkillKernel::matern52}},
+                 "covariance function; sum: constant + linear + matern32 an input + se-ard "
+                 "over goal - start; additive: without the last; auto: of these the one with the smaller error on "
+                 "targets left out, but se-ard with --paper");
   program.choice("--mean", options.mean,
                  {{"auto", SkillMean::automatic},
                   {"zero", SkillMean::zero},
@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
       }
       rows.push_back({row.header.labels, std::move(row.dmp)});
     }
+    options.kernel = choose_kernel(file.header.columns, rows, options);
     file.skill = train_skill(file.header.columns, rows, options);
     if (calibrated) file.skill.calibration = calibrate(file.skill, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));

@@ -38,6 +38,12 @@ enum class BandKind {
 [[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
+/// The kernel to learn with. SkillKernel::automatic without the paper's process: of `sum` and `additive` the one with
+/// the smaller error on targets left out in turn, root mean square over targets, `sum` where nothing can be left out:
+/// few targets cannot say by evidence whether inputs act together. Any other: as it is.
+[[nodiscard]] SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                                        const SkillOptions& options);
+
 /// Leaves every target out in turn, learns from the others, and compares what is predicted with the mean of the
 /// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target. The sd beside
 /// it is that of the skill's own hyperparameters: searched anew, they fall now into one optimum and now into another,
