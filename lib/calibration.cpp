@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "lfdtools/gaussian.hpp"
 #include "lfdtools/parallel.hpp"
@@ -11,25 +10,6 @@ namespace lfd {
 namespace {
 
 constexpr Eigen::Index phase_count = 200;
-
-/// Rows of one target and teacher, by position.
-std::vector<std::vector<std::size_t>> by_target(const std::vector<SkillRow>& rows) {
-  std::vector<std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto same = [&](const auto& group) {
-      const Labels& a = rows[group.front()].labels;
-      const Labels& b = rows[i].labels;
-      return a.target == b.target && a.teacher == b.teacher;
-    };
-    const auto found = std::find_if(groups.begin(), groups.end(), same);
-    if (found == groups.end()) {
-      groups.push_back({i});
-    } else {
-      found->push_back(i);
-    }
-  }
-  return groups;
-}
 
 std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group) {
   std::vector<SkillRow> rest;
@@ -41,7 +21,9 @@ std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vect
 
 /// Targets without which there is still something to learn from.
 std::vector<std::vector<std::size_t>> groups_to_leave_out(const std::vector<SkillRow>& rows) {
-  auto groups = by_target(rows);
+  std::vector<Labels> labels;
+  for (const auto& row : rows) labels.push_back(row.labels);
+  auto groups = target_groups(labels);
   std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
   return groups;
 }
@@ -110,15 +92,18 @@ double few_targets(std::size_t m, double level) {
 }
 
 Vector effect_of_target(const std::vector<Miss>& misses) {
-  Vector sum = Vector::Zero(misses.front().error.cols());
+  const double m = static_cast<double>(misses.size());
+  Vector missed = Vector::Zero(misses.front().error.cols());
+  Vector latent = missed;
   for (const auto& miss : misses) {
-    const Samples explained = miss.variance.of_mean(Vector::Zero(sum.size()), miss.repetitions);
-    for (Eigen::Index j = 0; j < sum.size(); ++j) {
+    for (Eigen::Index j = 0; j < missed.size(); ++j) {
       const double unit = miss.variance.unit.col(j).sum();
-      if (unit > 0) sum[j] += (miss.error.col(j).squaredNorm() - explained.col(j).sum()) / unit;
+      if (unit > 0)
+        missed[j] += (miss.error.col(j).squaredNorm() / unit - miss.variance.noise[j] / miss.repetitions) / m;
     }
+    latent += miss.variance.latent / m;
   }
-  return (sum / static_cast<double>(misses.size())).cwiseMax(0.0);
+  return missed.cwiseMax(latent);
 }
 
 double factor(const Calibration& calibration, BandKind kind, double level) {
@@ -179,27 +164,6 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
   Samples total = variance.of_mean(calibration->target_variance, repetitions);
   total.rowwise() += calibration->reproduction.array().square().matrix().transpose();
   return factor(*calibration, kind, level) * total.cwiseSqrt();
-}
-
-SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
-                          const SkillOptions& options) {
-  if (options.kernel != SkillKernel::automatic || options.paper) return options.kernel;
-  const auto groups = groups_to_leave_out(rows);
-  if (groups.size() < 3) return SkillKernel::sum;
-  const Matrix R = response_matrix(rows.front().primitive.settings, 1.0, linspace(0, 1, phase_count));
-  const auto error = [&](SkillKernel kernel) {
-    SkillOptions inner = options;
-    inner.kernel = kernel;
-    inner.starts = 1;
-    inner.jobs = 1;
-    std::vector<double> squares(groups.size());
-    parallel_for(groups.size(), options.jobs, [&](std::size_t g) {
-      const SkillPredictor predictor(train_skill(columns, without(rows, groups[g]), inner));
-      squares[g] = error_on(predictor, rows, groups[g], R).squaredNorm();
-    });
-    return std::accumulate(squares.begin(), squares.end(), 0.0);
-  };
-  return error(SkillKernel::additive) < error(SkillKernel::sum) ? SkillKernel::additive : SkillKernel::sum;
 }
 
 std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,

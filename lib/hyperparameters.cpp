@@ -56,12 +56,16 @@ Vector input_ranges(const Matrix& X) {
   return (range.array() > 1e-9 * largest).select(range, largest);
 }
 
+double likely(const LogNormalPrior& prior, double without) {
+  return std::log(prior.log_sd > 0 ? prior.median : without);
+}
+
 /// The hyperparameters in the order of `log_hyperparameters`, noise last.
 std::vector<Hyperparameter> hyperparameters(const Kernel& kernel, const Matrix& X, const MvgpOptions& options) {
   const Vector range = input_ranges(X);
   std::vector<Hyperparameter> all;
   for (const auto& term : kernel.terms) {
-    if (kernel.terms.size() > 1) all.push_back({Role::variance, 0, std::log(0.3), options.variance});
+    if (kernel.terms.size() > 1) all.push_back({Role::variance, 0, likely(options.variance, 0.3), options.variance});
     if (term.type == KernelType::linear || term.type == KernelType::constant) continue;
     for (const int j : term.inputs) {
       // Root mean square distance of two rows along this input, and as much more as there are inputs to share it.
@@ -71,16 +75,17 @@ std::vector<Hyperparameter> hyperparameters(const Kernel& kernel, const Matrix& 
       all.push_back({Role::length_scale, unit, std::max(std::log(l), unit + std::log(0.05)), options.length_scale});
     }
   }
-  all.push_back({Role::noise, 0, std::log(0.01), options.noise});
+  all.push_back({Role::noise, 0, likely(options.noise, 0.01), options.noise});
   return all;
 }
 
 struct Problem {
   const std::vector<Hyperparameter>& all;
+  double power;  // of the evidence
   Vector lower, upper;
 
-  explicit Problem(const std::vector<Hyperparameter>& hyper)
-      : all(hyper), lower(static_cast<Eigen::Index>(hyper.size())), upper(lower.size()) {
+  Problem(const std::vector<Hyperparameter>& hyper, double evidence_power)
+      : all(hyper), power(evidence_power), lower(static_cast<Eigen::Index>(hyper.size())), upper(lower.size()) {
     for (Eigen::Index i = 0; i < lower.size(); ++i) {
       lower(i) = at(i).lower();
       upper(i) = at(i).upper();
@@ -89,7 +94,8 @@ struct Problem {
   [[nodiscard]] const Hyperparameter& at(Eigen::Index i) const { return all[static_cast<std::size_t>(i)]; }
 
   double operator()(Evidence& evidence, const Vector& theta, Vector* gradient) const {
-    double value = evidence(theta, gradient);
+    double value = power * evidence(theta, gradient);
+    if (gradient != nullptr) *gradient *= power;
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
       double unused = 0;
       value += at(i).penalty(theta(i), gradient != nullptr ? (*gradient)(i) : unused);
@@ -154,7 +160,7 @@ Vector hyperparameters_of_maximum_evidence(const Matrix& X, const std::vector<Ou
                                            const Kernel& kernel, const EvidenceSettings& settings,
                                            const MvgpOptions& options) {
   const auto all = hyperparameters(kernel, X, options);
-  const Problem problem(all);
+  const Problem problem(all, options.evidence_power);
   // An evaluation costs n^3, so with many rows the starts compete on a random part of them, and what wins there is
   // refined on larger and larger parts: the last step, on all rows, starts near its end and takes few evaluations.
   // A free Omega or a linear mean might be undetermined on a part of the rows.

@@ -70,6 +70,19 @@ double log_evidence(const MvgpModel& model) {
   return -evidence(theta);
 }
 
+Matrix left_out_residuals(const MvgpModel& model, const std::vector<std::vector<std::size_t>>& groups) {
+  check_model(model);
+  Matrix L;
+  require(try_cholesky(noisy_covariance(model), L), "K' is not positive definite");
+  const Matrix inverse = cholesky_solve(L, Matrix::Identity(L.rows(), L.cols()));
+  const Matrix alpha = inverse * residual(model);
+  Matrix left_out = Matrix::Zero(alpha.rows(), alpha.cols());
+  for (const auto& group : groups) {
+    left_out(group, Eigen::all) = cholesky_solve(cholesky(inverse(group, group)), alpha(group, Eigen::all));
+  }
+  return left_out;
+}
+
 MvgpPredictor::MvgpPredictor(const MvgpModel& model) : model_(model) {
   check_model(model_);
   require(try_cholesky(noisy_covariance(model_), L_), "K' is not positive definite");

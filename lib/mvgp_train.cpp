@@ -1,5 +1,6 @@
 // Checks of the training data, and the model fields that follow from data and hyperparameters.
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -44,6 +45,9 @@ void check_arguments(const Matrix& X, const Matrix& W, const Matrix& A, const Mv
   }
   if (!(options.nu == 0 || options.nu > static_cast<double>(d) - 1) || !std::isfinite(options.nu)) {
     throw DataError("mvgp.bad_prior", "nu must be greater than d - 1");
+  }
+  if (!(options.evidence_power > 0 && options.evidence_power <= 1)) {
+    throw DataError("mvgp.bad_prior", "the power of the evidence must be in (0, 1]");
   }
   const auto& noise = options.row_noise;
   if (noise.size() > 0 && (noise.size() != X.rows() || !noise.allFinite() || (noise.array() <= 0).any())) {
@@ -95,6 +99,25 @@ void complete(MvgpModel& model, bool known) {
   model.log_marginal_likelihood = log_evidence(model);
 }
 
+/// Blocks cut to the principal directions of MvgpOptions::smallest_share; blocks without one are left out, unless all
+/// are.
+std::vector<OutputBlock> principal(const std::vector<OutputBlock>& blocks, double smallest_share) {
+  if (smallest_share == 0) return blocks;
+  double largest = 0;
+  for (const auto& block : blocks) largest = std::max(largest, block.Y.squaredNorm());
+  std::vector<OutputBlock> cut;
+  for (const auto& block : blocks) {
+    const Eigen::JacobiSVD<Matrix> svd(block.Y.transpose() * block.Y, Eigen::ComputeFullU);
+    const Eigen::Index d = block.Y.cols();
+    const Eigen::Index r = (svd.singularValues().array() > smallest_share * largest).count();
+    if (r == 0) continue;
+    const Matrix V = svd.matrixU().leftCols(r);
+    cut.push_back({block.Y * V, block.psi.size() == 1 ? block.psi : Matrix(V.transpose() * block.psi * V),
+                   block.nu - static_cast<double>(d - r)});
+  }
+  return cut.empty() ? blocks : cut;
+}
+
 }  // namespace
 
 MvgpOptions paper_mvgp_options(int p) {
@@ -106,9 +129,10 @@ MvgpOptions paper_mvgp_options(int p) {
 MvgpOptions default_mvgp_options(int p) {
   MvgpOptions options;
   options.kernel = sum_kernel(p);
-  options.length_scale = {1.0, 1.0};
-  options.variance = {0.3, 2.0};
-  options.noise = {0.03, 2.0};
+  options.length_scale = {2.0, 1.0};
+  options.variance = {0.1, 2.0};
+  options.noise = {0.1, 2.0};
+  options.smallest_share = 1e-7;
   return options;
 }
 
@@ -146,7 +170,8 @@ std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::
     Kernel kernel = models.front().kernel;
     scale_linear_terms(kernel, models.front().X);
     const EvidenceSettings settings{options.omega, estimated, {}, 0, options.row_noise};
-    const Vector theta = hyperparameters_of_maximum_evidence(models.front().X, blocks, kernel, settings, options);
+    const Vector theta = hyperparameters_of_maximum_evidence(
+        models.front().X, principal(blocks, options.smallest_share), kernel, settings, options);
     kernel = with_log_hyperparameters(kernel, theta.head(theta.size() - 1));
     for (auto& model : models) {
       model.kernel = kernel;

@@ -38,12 +38,6 @@ enum class BandKind {
 [[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
-/// The kernel to learn with. SkillKernel::automatic without the paper's process: of `sum` and `additive` the one with
-/// the smaller error on targets left out in turn, root mean square over targets, `sum` where nothing can be left out:
-/// few targets cannot say by evidence whether inputs act together. Any other: as it is.
-[[nodiscard]] SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
-                                        const SkillOptions& options);
-
 /// Leaves every target out in turn, learns from the others, and compares what is predicted with the mean of the
 /// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target. The sd beside
 /// it is that of the skill's own hyperparameters: searched anew, they fall now into one optimum and now into another,
@@ -51,7 +45,10 @@ enum class BandKind {
 ///
 /// target_variance is what sets a target apart from what its neighbours say (rows of one target share it, so that
 /// repeating a target does not average it away), by moments on each axis: the mean over targets of
-/// (sum of squared errors) / (sum of unit variances) - latent - noise / rows, at least 0. The factors are quantiles of
+/// (sum of squared errors) / (sum of unit variances) - noise / rows, but at least the mean of the latent variances. So
+/// at least half of the variance does not depend on the target: how latent variance rises from a target's neighbourhood
+/// is the least certain part of a process, and a factor measured where targets are left out would be too small between
+/// them. The factors are quantiles of
 /// |error| / sd: `pointwise` over all samples and axes, `path` over the targets' greatest, with the rank
 /// ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability m / (m + 1)
 /// when that rank is over m. Both times t / z, the quantiles of Student-t with m - 1 degrees of freedom and of the

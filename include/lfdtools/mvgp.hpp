@@ -52,6 +52,13 @@ struct MvgpOptions {
   LogNormalPrior length_scale;  ///< median in units of each input's range
   LogNormalPrior variance;      ///< of the terms of a sum
   LogNormalPrior noise;
+  /// Power of the evidence beside the priors, in (0, 1]. Rows that repeat each other say less than the process, for
+  /// which they are independent given the motion meant, believes: with targets / rows a target counts once.
+  double evidence_power = 1;
+  /// Hyperparameters come from the principal directions of Y - M whose mean square is at least this share of the whole
+  /// group's, or of the largest group's: the evidence of those outputs alone (Omega's prior is marginalised with them).
+  /// A direction in which nothing ever happens would be proof of no noise at all, with a weight that has no bound.
+  double smallest_share = 0;
   bool optimise = true;
   int starts = 8;  ///< one from the distances of the rows, the others the best of seeded draws
   std::uint64_t seed = 1;
@@ -123,6 +130,12 @@ class MvgpPredictor {
 
 /// ln p(Y | X) recomputed from the fields (explicit mean coefficients: those of the model's K').
 [[nodiscard]] double log_evidence(const MvgpModel& model);
+
+/// What is left of each row when its whole group is left out and predicted from the others, hyperparameters and mean
+/// kept: e_g = ([K'^-1]_gg)^-1 [K'^-1 (Y - m(X))]_g, n x d, transformed as Y is. No process is trained again: the
+/// inverse of a block of K'^-1 is the covariance of the group given the others.
+/// @param groups  rows of each group, from 0; rows of no group are left at 0
+[[nodiscard]] Matrix left_out_residuals(const MvgpModel& model, const std::vector<std::vector<std::size_t>>& groups);
 
 /// K' of the model, n x n.
 [[nodiscard]] Matrix noisy_covariance(const MvgpModel& model);

@@ -68,6 +68,13 @@ enum class SkillMean {
   line  ///< known beforehand: the weights of the straight minimum-jerk motion, proportional to dP
 };
 
+/// What is done about the tempo of a target's rows.
+enum class SkillTempo {
+  automatic,  ///< `shared`; `own` with SkillOptions::paper and with primitives of scaling goal
+  own,        ///< rows as they are
+  shared      ///< drawn towards the tempo of all targets (tempo.hpp: with_shared_tempo)
+};
+
 struct Skill;
 
 struct SkillOptions {
@@ -78,6 +85,7 @@ struct SkillOptions {
   SkillInputs inputs = SkillInputs::automatic;
   SkillKernel kernel = SkillKernel::automatic;
   SkillMean mean = SkillMean::automatic;
+  SkillTempo tempo = SkillTempo::automatic;
   OmegaRule omega = OmegaRule::integrated;
   int starts = 5;
   std::uint64_t seed = 1;
@@ -124,12 +132,28 @@ struct Skill {
   std::optional<Calibration> calibration;  ///< empty: not calibrated
 };
 
-/// Learns weights as a function of dP from rows that share their settings.
+/// Learns weights as a function of dP from rows that share their settings. Hyperparameters are those of maximum
+/// evidence times priors; but for the paper's process, with the evidence to the power (targets / rows), because rows of
+/// a target share what sets it apart and are not the independent witnesses that the process takes them for.
 /// @param columns  D signal names, as the rows' axes
-/// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every dP is the same; those of
-///         train_mvgp
+/// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every dP is the same;
+///         [skill.tempo] if a shared tempo is asked for where there is none; those of train_mvgp
 [[nodiscard]] Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
                                 const SkillOptions& options = {});
+
+/// The kernel to learn with. SkillKernel::automatic without the paper's process: of `sum` and `additive` the one that
+/// misses less on targets left out (left_out_residuals), `sum` under four targets: few targets cannot
+/// say by evidence whether inputs act together. Any other: as it is.
+/// @throws those of train_skill
+[[nodiscard]] SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
+                                        const SkillOptions& options);
+
+/// Positions of the rows of each target and teacher, by first appearance. A row that names no target is one of its own.
+[[nodiscard]] std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& rows);
+
+/// What is left of each row when its target is left out and predicted from the others with the skill's own
+/// hyperparameters, n x (D N): by signal, then by basis, in the metric of each model.
+[[nodiscard]] Matrix left_out_residuals(const Skill& skill);
 
 /// Whether rows can make a skill: at least two, whose dP differ.
 [[nodiscard]] bool is_trainable(const std::vector<SkillRow>& rows);
