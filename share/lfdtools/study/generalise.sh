@@ -4,12 +4,12 @@
 #
 #   sh share/lfdtools/study/generalise.sh layouts       24 layouts, 2 seeds of the noise each, 10 demonstrations a hole:
 #                                                       mean rmse of the default skill and of the best simple opponent in
-#                                                       hindsight, their ratio, the ratios to paper and paper-full (4 min)
+#                                                       hindsight, their ratio, the ratios to paper and paper-full (2 min)
 #   sh share/lfdtools/study/generalise.sh repetitions   the same layouts, 1 seed, with 3, 5 and 10 demonstrations (4 min)
-#   sh share/lfdtools/study/generalise.sh A3            experiment A with 3 demonstrations a hole, 20 seeds (2 min)
+#   sh share/lfdtools/study/generalise.sh A3            experiment A with 3 demonstrations a hole, 20 seeds (1 min)
 #   sh share/lfdtools/study/generalise.sh coverage      100 layouts: how much the default skill's 95 % bands hold, of the
 #                                                       intention itself (latent) and of single demonstrations of the new
-#                                                       holes (predictive); of samples, and of whole paths (3 min)
+#                                                       holes (predictive); of samples, and of whole paths (4 min)
 #
 # Times are those of two processors. LFD_LAYOUTS and LFD_SEEDS set how many layouts and seeds; seeds are numbers from 1 and
 # there is no other chance in it, so that every run gives the same figures. Results under build/study/generalise:
