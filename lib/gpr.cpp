@@ -69,7 +69,7 @@ Predictor train_gpr(const Fold& fold, const PreparationOptions& options) {
         dmp.weights(j, b) = scalar.mean;
         if (!scalar.process) continue;
         const MvgpPrediction prediction = scalar.process->predict(query.change());
-        const double noise = scalar.noise_variance / static_cast<double>(query.repetitions);
+        const double noise = scalar.noise_variance / query.repetitions;
         dmp.weights(j, b) += scalar.sd * prediction.mean[0];
         variances(j, b) = scalar.sd * scalar.sd * scalar.process->weight_covariance(prediction.variance + noise)(0, 0);
       }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -23,7 +24,7 @@ Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool r
   const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));
   return [skill, rows_are_means](const Query& query) {
     const Dmp dmp = skill->primitive({{}, query.goal, query.start, {}});
-    const double averaged = rows_are_means ? 1.0 : static_cast<double>(query.repetitions);
+    const double averaged = rows_are_means && std::isfinite(query.repetitions) ? 1.0 : query.repetitions;
     const auto half_width = [skill, reach = skill->reach({{}, query.goal, query.start, {}}), averaged](BandKind kind,
                                                                                                        double level) {
       return band(*skill, reach, linspace(0, 1, phase_count), kind, level, averaged);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t neighbour_count = 4;
 
-/// Targets by number: those left out together, and those that remain.
+/// Targets by number: those to learn from, and those to be judged on, which are left out of what is learnt.
 struct Split {
   std::vector<std::size_t> left_out;
   std::vector<std::size_t> training;
@@ -96,6 +96,74 @@ std::string describe_fold(const Split& split, const std::vector<JudgedTarget>& j
   return words;
 }
 
+/// Every method learns from the training targets of each fold and is judged on those left out of it.
+/// @param folds  a target is left out of one at most
+Validation judge(const std::vector<TargetDemonstrations>& targets, const std::vector<Split>& folds,
+                 const ValidationOptions& options) {
+  const auto chosen = chosen_methods(options.methods);
+  Needs needs;
+  for (const Method* method : chosen) {
+    needs.primitives = needs.primitives || method->needs.primitives;
+    needs.paper = needs.paper || method->needs.paper;
+  }
+  std::vector<bool> is_left_out(targets.size(), false), is_training(targets.size(), false);
+  for (const auto& split : folds) {
+    for (const std::size_t i : split.left_out) is_left_out[i] = true;
+    for (const std::size_t i : split.training) is_training[i] = true;
+  }
+  std::vector<JudgedTarget> judged(targets.size());
+  std::vector<TrainingTarget> training(targets.size());
+  parallel_for(targets.size(), options.jobs, [&](std::size_t i) {
+    const auto recordings = recorded(targets[i], options.preparation.alignment);
+    judged[i] = judged_target(targets[i].labels, recordings);
+    if (targets[i].noise_free) judged[i].query.repetitions = std::numeric_limits<double>::infinity();
+    if (is_training[i]) training[i] = training_target(targets[i].labels, recordings, options.preparation, needs, i);
+  });
+
+  Validation validation;
+  std::vector<std::size_t> place(targets.size());  // of a target left out, among the scores
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    place[i] = validation.noise_floor.size();
+    if (is_left_out[i]) validation.noise_floor.push_back(judged[i].noise_floor);
+  }
+  validation.scores.resize(validation.noise_floor.size() * chosen.size());
+  std::vector<double> seconds(folds.size() * chosen.size());
+  parallel_for(seconds.size(), options.jobs, [&](std::size_t job) {
+    const Split& split = folds[job / chosen.size()];
+    const std::size_t m = job % chosen.size();
+    const Method& method = *chosen[m];
+    Fold fold;
+    Neighbours neighbours;
+    for (const std::size_t i : split.training) {
+      fold.push_back(&training[i]);
+      neighbours.push_back(&judged[i]);
+    }
+    std::vector<Predicted> predicted;
+    const double begin = processor_time();
+    try {
+      const Predictor predictor = method.train(fold, options.preparation);
+      for (const std::size_t i : split.left_out) predicted.push_back(predictor(judged[i].query));
+    } catch (const DataError& error) {
+      throw DataError(error.id(), fmt::format("{} (method {}, judged on {})", error.what(), method.name,
+                                              describe_fold(split, judged)));
+    }
+    seconds[job] = processor_time() - begin;
+    for (std::size_t k = 0; k < predicted.size(); ++k) {
+      const std::size_t i = split.left_out[k];
+      validation.scores[place[i] * chosen.size() + m] = score(predicted[k], judged[i], neighbours, method.name);
+    }
+  });
+
+  for (std::size_t m = 0; m < chosen.size(); ++m) {
+    validation.times.push_back({chosen[m]->name, 0});
+    for (std::size_t f = 0; f < folds.size(); ++f) validation.times[m].seconds += seconds[f * chosen.size() + m];
+  }
+  for (const auto& split : folds) {
+    for (const std::size_t i : split.training) validation.lifted_gates += training[i].small_change ? 1 : 0;
+  }
+  return validation;
+}
+
 }  // namespace
 
 const std::vector<double>& nominal_levels() {
@@ -116,63 +184,25 @@ BandScore band_score(const Predicted& predicted, double level, const Samples& me
 }
 
 Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets, const ValidationOptions& options) {
-  const auto chosen = chosen_methods(options.methods);
   if (targets.size() < 3) {
     throw DataError("validation.too_few_targets",
                     fmt::format("leaving one target out needs at least three targets, not {}", targets.size()));
   }
-  const auto folds = splits(targets.size(), options.folds);
-  Needs needs;
-  for (const Method* method : chosen) {
-    needs.primitives = needs.primitives || method->needs.primitives;
-    needs.paper = needs.paper || method->needs.paper;
-  }
-  std::vector<JudgedTarget> judged(targets.size());
-  std::vector<TrainingTarget> training(targets.size());
-  parallel_for(targets.size(), options.jobs, [&](std::size_t i) {
-    const auto recordings = recorded(targets[i], options.preparation.alignment);
-    judged[i] = judged_target(targets[i].labels, recordings);
-    training[i] = training_target(targets[i].labels, recordings, options.preparation, needs, i);
-  });
+  return judge(targets, splits(targets.size(), options.folds), options);
+}
 
-  Validation validation;
-  validation.scores.resize(targets.size() * chosen.size());
-  std::vector<double> seconds(folds.size() * chosen.size());
-  parallel_for(seconds.size(), options.jobs, [&](std::size_t job) {
-    const Split& split = folds[job / chosen.size()];
-    const std::size_t m = job % chosen.size();
-    const Method& method = *chosen[m];
-    Fold fold;
-    Neighbours neighbours;
-    for (const std::size_t i : split.training) {
-      fold.push_back(&training[i]);
-      neighbours.push_back(&judged[i]);
-    }
-    std::vector<Predicted> predicted;
-    const double begin = processor_time();
-    try {
-      const Predictor predictor = method.train(fold, options.preparation);
-      for (const std::size_t i : split.left_out) predicted.push_back(predictor(judged[i].query));
-    } catch (const DataError& error) {
-      throw DataError(error.id(), fmt::format("{} (method {}, without {})", error.what(), method.name,
-                                              describe_fold(split, judged)));
-    }
-    seconds[job] = processor_time() - begin;
-    for (std::size_t k = 0; k < predicted.size(); ++k) {
-      const std::size_t i = split.left_out[k];
-      validation.scores[i * chosen.size() + m] = score(predicted[k], judged[i], neighbours, method.name);
-    }
-  });
-
-  for (const auto& target : judged) validation.noise_floor.push_back(target.noise_floor);
-  for (std::size_t m = 0; m < chosen.size(); ++m) {
-    validation.times.push_back({chosen[m]->name, 0});
-    for (std::size_t f = 0; f < folds.size(); ++f) validation.times[m].seconds += seconds[f * chosen.size() + m];
+Validation judge_on_test_targets(const std::vector<TargetDemonstrations>& targets,
+                                 const std::vector<TargetDemonstrations>& test, const ValidationOptions& options) {
+  if (targets.size() < 2) {
+    throw DataError("validation.too_few_targets",
+                    fmt::format("learning needs at least two targets, not {}", targets.size()));
   }
-  for (const auto& split : folds) {
-    for (const std::size_t i : split.training) validation.lifted_gates += training[i].small_change ? 1 : 0;
-  }
-  return validation;
+  if (test.empty()) throw DataError("validation.no_test_target", "there is no target to be judged on");
+  auto all = targets;
+  all.insert(all.end(), test.begin(), test.end());
+  Split split;
+  for (std::size_t i = 0; i < all.size(); ++i) (i < targets.size() ? split.training : split.left_out).push_back(i);
+  return judge(all, {split}, options);
 }
 
 }  // namespace lfd

@@ -17,4 +17,16 @@ foreach(oracle IN ITEMS dtw gmm gmr dmp skill motion validation arm)
   set_tests_properties("oracle: ${oracle}" PROPERTIES TIMEOUT 300)
 endforeach()
 
+# The study on one layout, so that it cannot rot: it says its last line only if all went well.
+foreach(part IN ITEMS layouts coverage)
+  add_test(NAME "study: generalise ${part}"
+           COMMAND ${CMAKE_COMMAND} -E env LFD_BUILD_DIR=${CMAKE_BINARY_DIR} LFD_LAYOUTS=1 LFD_SEEDS=1
+                   LFD_OUT_DIR=${CMAKE_CURRENT_BINARY_DIR}/study
+                   sh ${CMAKE_SOURCE_DIR}/share/lfdtools/study/generalise.sh ${part})
+endforeach()
+set_tests_properties("study: generalise layouts" PROPERTIES
+                     PASS_REGULAR_EXPRESSION "best in hindsight +[0-9.]+ [^\n]*; [01]\n.*results: ")
+set_tests_properties("study: generalise coverage" PROPERTIES
+                     PASS_REGULAR_EXPRESSION "\\(predictive\\) +1 +[0-9.]+ %.*results: ")
+
 add_test(NAME "layers" COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh ${CMAKE_SOURCE_DIR})

@@ -124,6 +124,72 @@ TEST_CASE("targets of one fold are left out together and scored as alone where n
   CHECK(id_of(targets, options) == "validation.too_few_targets");
 }
 
+TEST_CASE("on test targets methods are judged as on a fold of the same targets left out") {
+  const auto targets = small_targets();
+  ValidationOptions options;
+  options.methods = {"skill", "nearest", "affine-prior"};
+  const auto tested =
+      judge_on_test_targets({targets.begin(), targets.begin() + 4}, {targets.begin() + 4, targets.end()}, options);
+  REQUIRE(tested.scores.size() == 6);
+  REQUIRE(tested.noise_floor.size() == 2);
+  options.folds = {1, 2, 3, 4, 5, 5};
+  const auto folds = leave_one_target_out(targets, options);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const ValidationScore& one = tested.scores[i];
+    const ValidationScore& other = folds.scores[12 + i];
+    CHECK(one.labels == other.labels);
+    CHECK(one.method == other.method);
+    CHECK(one.rmse == other.rmse);
+    CHECK(one.outside == other.outside);
+    CHECK(one.band95.has_value() == other.band95.has_value());
+    if (one.band95) CHECK(one.band95->width == other.band95->width);
+  }
+  CHECK(tested.noise_floor[0] == folds.noise_floor[4]);
+}
+
+TEST_CASE("bands narrow from one demonstration to the mean of three to the intention itself") {
+  const Experiment experiment = small_experiment();
+  const auto targets = small_targets();
+  ValidationOptions options;
+  options.methods = {"skill", "gpr"};
+  const Labels labels{"new", {}, {}, {}};
+  const Vector hole = small_query().goal;
+  const Trajectory path{linspace(0, 3, phase_count), intention(experiment, hole, linspace(0, 1, phase_count))};
+  const auto widths = [&](std::size_t demonstrations, bool noise_free) {
+    const TargetDemonstrations test{labels, std::vector<Trajectory>(demonstrations, path), noise_free};
+    const auto validation = judge_on_test_targets(targets, {test}, options);
+    CHECK(validation.noise_floor[0].has_value() == (demonstrations > 1));
+    return std::pair{validation.scores[0].band95->width, validation.scores[1].band95->width};
+  };
+  const auto one = widths(1, false);
+  const auto three = widths(3, false);
+  const auto itself = widths(1, true);
+  CHECK(one.first > three.first);
+  CHECK(three.first > itself.first);
+  CHECK(one.second > three.second);
+  CHECK(three.second > itself.second);
+  CHECK(itself.first > 0);
+}
+
+TEST_CASE("two targets are enough to learn from for test targets, one is not, nor is no test target") {
+  const auto targets = small_targets();
+  const std::vector<TargetDemonstrations> two(targets.begin(), targets.begin() + 2);
+  const std::vector<TargetDemonstrations> one(targets.begin(), targets.begin() + 1);
+  for (const auto& score : judge_on_test_targets(two, {targets[5]}, every_method()).scores) {
+    CHECK(std::isfinite(score.rmse));
+  }
+  const auto id = [](const auto& learnt, const auto& test) -> std::string {
+    try {
+      (void)judge_on_test_targets(learnt, test, {});
+    } catch (const Error& error) {
+      return error.id();
+    }
+    return "";
+  };
+  CHECK(id(one, two) == "validation.too_few_targets");
+  CHECK(id(two, std::vector<TargetDemonstrations>{}) == "validation.no_test_target");
+}
+
 TEST_CASE("a band's score counts phases and signals, without the ends") {
   const Samples path = Samples::Zero(5, 2);
   Samples mean = Samples::Zero(5, 2);

@@ -1,29 +1,15 @@
-// Leave-one-target-out: how far a skill is from targets that it has not seen, beside opponents.
+// How far a skill is from targets that it has not seen, beside opponents: leave-one-target-out, or test targets.
 #include <algorithm>
 
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/cli/validation_report.hpp"
-#include "lfdtools/io/demonstrations.hpp"
 #include "lfdtools/io/folds.hpp"
+#include "lfdtools/io/targets.hpp"
 #include "lfdtools/methods.hpp"
 
 using namespace lfd;
 
 namespace {
-
-std::vector<TargetDemonstrations> read_targets(const cli::Run& run, Messages& messages) {
-  DemonstrationSource source(CsvTable(run.open(), messages, {.renumber = run.options().renumber}), messages,
-                             {.columns = run.options().columns});
-  std::vector<TargetDemonstrations> targets(source.pools());
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    Pool pool = source.pool(i);
-    targets[i].labels = pool.labels;
-    for (auto& recording : pool.recordings) {
-      targets[i].demonstrations.push_back(std::move(recording.demonstration.trajectory));
-    }
-  }
-  return targets;
-}
 
 std::vector<int> folds_of(const std::string& file, const std::vector<TargetDemonstrations>& targets,
                           Messages& messages) {
@@ -57,8 +43,11 @@ int main(int argc, char** argv) {
   std::optional<std::int64_t> repetitions;
   std::optional<std::string> table;
   std::string folds;
+  std::string test;
+  bool noise_free = false;
   std::string reliability;
-  cli::Program program("skill-validate", "Leave each target out once and generate it from the others.");
+  cli::Program program("skill-validate",
+                       "Generate targets that were left out, or those of a test file, from the others.");
   program.reads("demonstrations CSV").uses_jobs().uses_seed().uses_columns();
   program.words("--methods", options.methods, "methods to compare (default: all)");
   program.choice(
@@ -66,6 +55,8 @@ int main(int argc, char** argv) {
       {{"recordings", Road::recordings}, {"demonstrations", Road::demonstrations}, {"references", Road::references}},
       "training rows: every demonstration as recorded, or aligned, or one GMM-GMR reference a target");
   program.path("--folds", folds, "leave out together the targets of one fold: CSV target,fold");
+  program.path("--test", test, "learn from all targets, and be judged on those of this demonstrations CSV");
+  program.flag("--noise-free", noise_free, "the paths of --test are intentions: bands are about them");
   program.integer("--repetitions", repetitions, {1, 1'000'000}, "learn from so many demonstrations of a target, drawn");
   program.number_or_default("--trim", rows.alignment.trim, default_trim, {0, 1, true},
                             "cut idle ends first, as demo-align does");
@@ -76,12 +67,20 @@ int main(int argc, char** argv) {
   std::vector<std::pair<std::string, std::string>> known;
   for (const auto& method : methods()) known.emplace_back(method.name, method.meaning);
   program.topic("Methods", known);
-  program.check([&] { (void)chosen_methods(options.methods); });
+  program.check([&] {
+    (void)chosen_methods(options.methods);
+    if (!folds.empty() && !test.empty()) throw UsageError("usage.exclusive", "--folds and --test exclude each other");
+    if (test == "-") throw UsageError("usage.value", "--test takes a file, not standard input");
+    if (noise_free && test.empty()) throw UsageError("usage.missing", "--noise-free speaks of the paths of --test");
+  });
   program.example("skill-validate demos.csv --table", "every method on every target");
   program.example("skill-validate demos.csv --methods skill,affine -o scores.csv --table=table.txt", "CSV and table");
+  program.example("skill-validate demos.csv --test truth.csv --noise-free --table", "against what the teacher meant");
   return program.run(argc, argv, [&](cli::Run& run) {
     check_names({run.options().output, table.value_or(""), reliability, run.options().summary});
-    const auto targets = read_targets(run, run.messages());
+    const DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
+                                     run.messages(), {.columns = run.options().columns});
+    const auto targets = read_targets(source);
     if (!folds.empty()) options.folds = folds_of(folds, targets, run.messages());
     rows.bases = bases;
     rows.k_from = components.first;
@@ -89,7 +88,11 @@ int main(int argc, char** argv) {
     if (repetitions) rows.repetitions = static_cast<std::size_t>(*repetitions);
     rows.seed = run.seed();
     options.jobs = run.jobs();
-    const Validation validation = leave_one_target_out(targets, options);
+    const Validation validation =
+        test.empty()
+            ? leave_one_target_out(targets, options)
+            : judge_on_test_targets(
+                  targets, read_test_targets(test, source.columns(), targets, noise_free, run.messages()), options);
     cli::report(validation, run);
     if (table && !table->empty()) write_file(*table, cli::write_table, validation);
     if (!reliability.empty()) write_file(reliability, cli::write_reliability, validation);

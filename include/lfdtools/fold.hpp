@@ -18,6 +18,7 @@ inline constexpr Eigen::Index phase_count = 200;
 struct TargetDemonstrations {
   Labels labels;
   std::vector<Trajectory> demonstrations;
+  bool noise_free = false;  ///< the one path is the intention itself: a band about it needs no noise of demonstrations
 };
 
 /// What one training row is.
@@ -62,8 +63,8 @@ struct TrainingTarget {
 
 /// All that a method is told of a target that it has not seen.
 struct Query {
-  Vector start, goal;           ///< means of the measured ends, D [m]
-  std::size_t repetitions = 1;  ///< demonstrations behind the mean path that the band is about
+  Vector start, goal;      ///< means of the measured ends, D [m]
+  double repetitions = 1;  ///< demonstrations behind the mean path that the band is about; infinite: the intention
 
   [[nodiscard]] Vector change() const { return goal - start; }
 };

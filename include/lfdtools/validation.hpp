@@ -1,4 +1,4 @@
-// The judge: every target is left out once and generated from the others, whole pipe inside each fold.
+// The judge: methods learn from some targets and generate others that they have not seen, whole pipe inside each fold.
 #pragma once
 
 #include <optional>
@@ -13,6 +13,7 @@ namespace lfd {
 struct ValidationOptions {
   std::vector<std::string> methods;  ///< names of methods.hpp; empty: all
   /// Fold of each target, any numbers; targets of one fold are left out together. Empty: each is a fold of its own.
+  /// Of leave_one_target_out alone.
   std::vector<int> folds;
   PreparationOptions preparation;
   unsigned jobs = 1;
@@ -28,7 +29,7 @@ struct BandScore {
 
 /// How a method did on a target that it had not seen.
 struct ValidationScore {
-  Labels labels;  ///< of the left-out target
+  Labels labels;  ///< of the judged target
   std::string method;
   double rmse = 0;                  ///< to the target's mean path at equal phases [m]
   double end_error = 0;             ///< distance from the goal at tau [m]
@@ -63,6 +64,14 @@ struct Validation {
 ///         UsageError [validation.method]; those of the stages, with method and fold named
 [[nodiscard]] Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets,
                                               const ValidationOptions& options);
+
+/// Learns from all of `targets`, once, and is judged on all of `test`, told of them what leave_one_target_out tells.
+/// Both are trimmed alike. A target may be in both: then its score is one of reproduction.
+/// @throws DataError [validation.too_few_targets] under two targets to learn from, [validation.no_test_target];
+///         the others as leave_one_target_out
+[[nodiscard]] Validation judge_on_test_targets(const std::vector<TargetDemonstrations>& targets,
+                                               const std::vector<TargetDemonstrations>& test,
+                                               const ValidationOptions& options);
 
 /// @param predicted  with a band   @param mean_path  phase_count x D [m]
 [[nodiscard]] BandScore band_score(const Predicted& predicted, double level, const Samples& mean_path);

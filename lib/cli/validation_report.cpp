@@ -39,7 +39,7 @@ void write_table(const Validation& validation, Output& out) {
   std::string header = fmt::format("{:<18}{:>8}", "rmse [mm]", "mean");
   for (std::size_t i = 0; i < validation.noise_floor.size(); ++i) {
     const Labels& labels = validation.scores[i * errors.size()].labels;
-    header += fmt::format("{:>8}", describe(labels).substr(labels.teacher ? 0 : 7));  // without the word `target`
+    header += fmt::format("{:>8}", labels.teacher ? describe(labels) : labels.target.value_or("-"));
   }
   out.write(header + "\n");
   for (const auto& method : errors) {

@@ -16,8 +16,8 @@ _lfdtools_options() {
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
-    skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --repetitions --trim" \
-                         "-n --basis -k --components --table --reliability" ;;
+    skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --test --noise-free --repetitions" \
+                         "--trim -n --basis -k --components --table --reliability" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
     ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
@@ -31,7 +31,7 @@ _lfdtools_options() {
 _lfdtools_words() {
   case $1:$2 in
     *:--errors) echo "text json" ;;
-    demo-synth:--write) echo "demonstrations intentions holes new-holes" ;;
+    demo-synth:--write) echo "demonstrations new-demonstrations intentions new-intentions holes new-holes" ;;
     demo-align:--reference) echo "medoid longest dba" ;;
     demo-align:--clock) echo "mean reference" ;;
     gmm-fit:--covariance-type) echo "full tied diagonal spherical" ;;
