@@ -12,7 +12,7 @@ _lfdtools_options() {
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --inputs --kernel --mean --omega" \
-                      "--calibration --starts" ;;
+                      "--process --calibration --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
@@ -46,8 +46,9 @@ _lfdtools_words() {
     mvgpr-train:--inputs) echo "auto change change+start" ;;
     mvgpr-train:--calibration) echo "targets none" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
-    skill-validate:--methods) echo "skill skill-axis skill-full skill-joint paper paper-full line nearest" \
-                                   "nearest-deviation mean mean-deviation moved-goal affine affine-means" \
+    mvgpr-train:--process) echo "gaussian student-t" ;;
+    skill-validate:--methods) echo "skill skill-axis skill-full skill-joint skill-student-t paper paper-full line" \
+                                   "nearest nearest-deviation mean mean-deviation moved-goal affine affine-means" \
                                    "affine-prior affine-ends gpr promp kmp" ;;
     skill-validate:--road) echo "recordings demonstrations references" ;;
     skill-plot:--kind) echo "auto motions planes time weights errors reliability" ;;
