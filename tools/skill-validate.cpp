@@ -1,7 +1,11 @@
 // Leave-one-target-out: how far a skill is from targets that it has not seen, beside opponents.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "lfdtools/cli/program.hpp"
+#include "lfdtools/cli/suggestion_report.hpp"
 #include "lfdtools/cli/validation_report.hpp"
 #include "lfdtools/io/demonstrations.hpp"
 #include "lfdtools/io/folds.hpp"
@@ -11,14 +15,18 @@ using namespace lfd;
 
 namespace {
 
-std::vector<TargetDemonstrations> read_targets(const cli::Run& run, Messages& messages) {
+/// @param columns  set to the names of the signals
+std::vector<TargetDemonstrations> read_targets(const cli::Run& run, Messages& messages,
+                                               std::vector<std::string>& columns) {
   DemonstrationSource source(CsvTable(run.open(), messages, {.renumber = run.options().renumber}), messages,
                              {.columns = run.options().columns});
+  columns = source.columns();
   std::vector<TargetDemonstrations> targets(source.pools());
   for (std::size_t i = 0; i < targets.size(); ++i) {
     Pool pool = source.pool(i);
     targets[i].labels = pool.labels;
     for (auto& recording : pool.recordings) {
+      targets[i].demonstration_labels.push_back(recording.demonstration.labels);
       targets[i].demonstrations.push_back(std::move(recording.demonstration.trajectory));
     }
   }
@@ -47,6 +55,46 @@ void write_file(const std::string& name, void (*write)(const Validation&, Output
   out.finish();
 }
 
+/// low and high of each signal in turn.
+/// @throws UsageError [usage.arity], [usage.range]
+GoalBox goal_box(const std::vector<double>& region) {
+  if (region.empty() || region.size() % 2 != 0) {
+    throw UsageError("usage.arity", "--suggest takes two numbers a signal, the least and the greatest of each in turn");
+  }
+  const Eigen::Map<const Matrix> ends(region.data(), 2, static_cast<Eigen::Index>(region.size() / 2));
+  if ((ends.row(0).array() > ends.row(1).array()).any()) {
+    throw UsageError("usage.range", "--suggest: the box is empty, a least value is over the greatest");
+  }
+  return {ends.row(0).transpose(), ends.row(1).transpose()};
+}
+
+/// The default skill of all targets, and what to demonstrate next.
+void suggest_target(const std::vector<TargetDemonstrations>& targets, const std::vector<std::string>& columns,
+                    const GoalBox& box, const PreparationOptions& preparation, cli::Run& run) {
+  if (box.low.size() != static_cast<Eigen::Index>(columns.size())) {
+    throw UsageError("usage.arity", fmt::format("--suggest takes {} numbers here, two a signal, not {}",
+                                                2 * columns.size(), 2 * box.low.size()));
+  }
+  std::vector<SkillRow> rows;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const TrainingTarget target = training_target(targets[i].labels, recorded(targets[i], preparation.alignment),
+                                                  preparation, {.primitives = true}, i);
+    for (std::size_t k = 0; k < target.examples.size(); ++k) {
+      rows.push_back({targets[i].demonstration_labels[k], target.examples[k].primitive});
+    }
+  }
+  SkillOptions options;
+  options.seed = run.seed();
+  options.jobs = run.jobs();
+  options.kernel = choose_kernel(columns, rows, options);
+  Skill skill = train_skill(columns, rows, options);
+  skill.calibration = calibrate(skill, rows, options);
+  const double repetitions = std::round(static_cast<double>(rows.size()) / static_cast<double>(targets.size()));
+  const Suggestion suggestion = suggest(SkillPredictor(std::move(skill)), box, repetitions);
+  cli::report(suggestion, columns, rows, run);
+  cli::write_suggestion(suggestion, columns, rows, run.output());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -58,6 +106,7 @@ int main(int argc, char** argv) {
   std::optional<std::string> table;
   std::string folds;
   std::string reliability;
+  std::optional<std::vector<double>> region;
   cli::Program program("skill-validate", "Leave each target out once and generate it from the others.");
   program.reads("demonstrations CSV").uses_jobs().uses_seed().uses_columns();
   program.words("--methods", options.methods, "methods to compare (default: all)");
@@ -77,11 +126,24 @@ int main(int argc, char** argv) {
   for (const auto& method : methods()) known.emplace_back(method.name, method.meaning);
   program.topic("Methods", known);
   program.check([&] { (void)chosen_methods(options.methods); });
+  program.numbers("--suggest", region, {}, "instead: the target in a box of goals that would teach most");
+  program.check([&] {
+    if (!region) return;
+    (void)goal_box(*region);
+    for (const char* other :
+         {"--methods", "--road", "--folds", "--repetitions", "--components", "--table", "--reliability"}) {
+      if (program.given(other)) {
+        throw UsageError("usage.exclusive", fmt::format("--suggest judges no methods, so it excludes {}", other));
+      }
+    }
+  });
   program.example("skill-validate demos.csv --table", "every method on every target");
   program.example("skill-validate demos.csv --methods skill,affine -o scores.csv --table=table.txt", "CSV and table");
+  program.example("skill-validate demos.csv --suggest -0.2,0.3,0.8,0.8,0.1,0.5", "what to demonstrate next");
   return program.run(argc, argv, [&](cli::Run& run) {
     check_names({run.options().output, table.value_or(""), reliability, run.options().summary});
-    const auto targets = read_targets(run, run.messages());
+    std::vector<std::string> columns;
+    const auto targets = read_targets(run, run.messages(), columns);
     if (!folds.empty()) options.folds = folds_of(folds, targets, run.messages());
     rows.bases = bases;
     rows.k_from = components.first;
@@ -89,6 +151,7 @@ int main(int argc, char** argv) {
     if (repetitions) rows.repetitions = static_cast<std::size_t>(*repetitions);
     rows.seed = run.seed();
     options.jobs = run.jobs();
+    if (region) return suggest_target(targets, columns, goal_box(*region), rows, run);
     const Validation validation = leave_one_target_out(targets, options);
     cli::report(validation, run);
     if (table && !table->empty()) write_file(*table, cli::write_table, validation);

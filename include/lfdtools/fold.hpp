@@ -18,6 +18,7 @@ inline constexpr Eigen::Index phase_count = 200;
 struct TargetDemonstrations {
   Labels labels;
   std::vector<Trajectory> demonstrations;
+  std::vector<Labels> demonstration_labels = {};  ///< of each, where they are asked for
 };
 
 /// What one training row is.

@@ -17,7 +17,7 @@ _lfdtools_options() {
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --repetitions --trim" \
-                         "-n --basis -k --components --table --reliability" ;;
+                         "-n --basis -k --components --table --reliability --suggest" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
     ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
@@ -63,7 +63,7 @@ _lfdtools_words() {
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
-    *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start) return 2 ;;
+    *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start | *:--suggest) return 2 ;;
     *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--max-*) return 2 ;;
     *) return 1 ;;
   esac
