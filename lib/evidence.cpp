@@ -22,6 +22,13 @@ double log_multivariate_gamma(Eigen::Index d, double a) {
   return sum;
 }
 
+/// d/da ln Gamma_d(a).
+double multivariate_digamma(double d, double a) {
+  double sum = 0;
+  for (double j = 0; j < d; ++j) sum += digamma(a - 0.5 * j);
+  return sum;
+}
+
 void refuse_undetermined_mean(MeanType mean, const Matrix& H) {
   if (H.cols() == 0 || Eigen::ColPivHouseholderQR<Matrix>(H).rank() == H.cols()) return;
   throw DataError("mvgp.mean_rank",
@@ -109,7 +116,13 @@ Evidence::Evidence(const Eigen::Ref<const Matrix>& X, const std::vector<OutputBl
       H_(mean_basis(settings.mean, X)),
       kernel_size_(log_hyperparameters(kernel).size()),
       n_(X.rows()),
-      integrated_(settings.omega == OmegaRule::integrated) {
+      integrated_(settings.omega == OmegaRule::integrated),
+      student_t_(settings.process == ProcessType::student_t) {
+  if (student_t_ && !integrated_) {
+    throw DataError("mvgp.omega_unbounded",
+                    "the likelihood of a Student-t process with a free Omega grows without bound; use the integrated "
+                    "Omega");
+  }
   refuse_undetermined_mean(settings.mean, H_);
   for (const auto& outputs : blocks) blocks_.push_back(turned(outputs));
 }
@@ -129,9 +142,11 @@ Evidence::Block Evidence::turned(const OutputBlock& outputs) {
   const double log_psi = log_determinant_from_cholesky(L_psi);
   Block block{{}, d, integrated_ ? n + outputs.nu : n, {}, {}};
   if (integrated_) {
-    constant_ += n * d / 2 * std::log(std::numbers::pi) + n / 2 * log_psi -
-                 log_multivariate_gamma(d_outputs, block.weight / 2) +
-                 log_multivariate_gamma(d_outputs, outputs.nu / 2);
+    constant_ += n * d / 2 * std::log(std::numbers::pi) + n / 2 * log_psi;
+    if (!student_t_) {
+      constant_ +=
+          log_multivariate_gamma(d_outputs, outputs.nu / 2) - log_multivariate_gamma(d_outputs, block.weight / 2);
+    }
   } else {
     constant_ += n * d / 2 * (log_2pi + 1 - std::log(n)) + n / 2 * log_psi;
   }
@@ -169,6 +184,9 @@ double Evidence::operator()(const Vector& theta, Vector* gradient) {
   if (H_.cols() > 0) H = K_.triangularView<Eigen::Lower>().solve(H_);
   double value = constant_;
   double d = 0;
+  const double n = static_cast<double>(n_);
+  const double delta = student_t_ ? std::exp(theta(kernel_size_ + 1)) : 1.0;  // Psi over the psi that turned Y
+  double slope = 0;                                                           // dvalue/ddelta
   for (auto& block : blocks_) {
     auto& [Y, outputs, weight, Z, S] = block;
     Z = Y;
@@ -178,10 +196,26 @@ double Evidence::operator()(const Vector& theta, Vector* gradient) {
     if (!Z.allFinite()) return infinity;
     S.setZero(Z.cols(), Z.cols());
     S.selfadjointView<Eigen::Lower>().rankUpdate(Z.transpose());
-    if (integrated_) S.diagonal().array() += 1.0;
+    if (integrated_) S.diagonal().array() += delta;
     if (!cholesky_in_place(S)) return infinity;
-    value += outputs * half_log_K + weight * S.diagonal().array().log().sum();
+    const double half_log_S = S.diagonal().array().log().sum();
     d += outputs;
+    if (student_t_) {
+      // With r columns left of d, |Psi + S| = |psi| delta^(d - r) |delta I + S|, S turned.
+      const double nu = outputs + 1 + delta;
+      const double r = static_cast<double>(S.rows());
+      weight = n + nu;
+      value += (n * outputs - weight * r) / 2 * std::log(delta) +
+               log_multivariate_gamma(static_cast<Eigen::Index>(outputs), nu / 2) -
+               log_multivariate_gamma(static_cast<Eigen::Index>(outputs), weight / 2);
+      if (gradient != nullptr) {
+        const Matrix L_inverse = S.triangularView<Eigen::Lower>().solve(Matrix::Identity(S.rows(), S.rows()));
+        slope += half_log_S - r / 2 * std::log(delta) + weight / 2 * L_inverse.squaredNorm() +
+                 (n * outputs - weight * r) / (2 * delta) +
+                 (multivariate_digamma(outputs, nu / 2) - multivariate_digamma(outputs, weight / 2)) / 2;
+      }
+    }
+    value += outputs * half_log_K + weight * half_log_S;
   }
   if (!std::isfinite(value)) return infinity;
   if (gradient == nullptr) return value;
@@ -199,6 +233,7 @@ double Evidence::operator()(const Vector& theta, Vector* gradient) {
   }
   gradient->resize(size());
   kernel_matrix_.gradient(K_, gradient->head(kernel_size_));
+  if (student_t_) (*gradient)(kernel_size_ + 1) = delta * slope;
   (*gradient)(kernel_size_) = std::exp(theta(kernel_size_)) * K_.diagonal().dot(row_noise_);
   return value;
 }

@@ -56,6 +56,14 @@ double log_normal_density(const Eigen::Ref<const Vector>& x, const Eigen::Ref<co
   return -0.5 * (static_cast<double>(x.size()) * log_2pi + log_determinant_from_cholesky(L) + e.squaredNorm());
 }
 
+double digamma(double x) {
+  double value = 0;
+  for (; x < 10; ++x) value -= 1 / x;  // digamma(x) = digamma(x + 1) - 1 / x
+  const double z = 1 / (x * x);        // then the asymptotic series, DLMF 5.11.2
+  return value + std::log(x) - 0.5 / x -
+         z * (1.0 / 12 - z * (1.0 / 120 - z * (1.0 / 252 - z * (1.0 / 240 - z * (1.0 / 132 - z * 691.0 / 32760)))));
+}
+
 double student_t_quantile(double p, double nu) {
   if (p < 0.5) return -student_t_quantile(1 - p, nu);
   const double tail = 1 - p;

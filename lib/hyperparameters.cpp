@@ -18,7 +18,7 @@ constexpr Eigen::Index first_part = 60;  // rows on which the starts compete, wh
 constexpr int draws_per_start = 40;      // of which the best is descended from
 constexpr BoxMinimumOptions competition = {.max_iterations = 60, .gradient_tolerance = 2e-2};
 
-enum class Role { variance, length_scale, noise };
+enum class Role { variance, length_scale, noise, degrees_of_freedom };
 
 /// One hyperparameter: its logarithm's bounds, unit, first value, and prior.
 struct Hyperparameter {
@@ -28,16 +28,19 @@ struct Hyperparameter {
   LogNormalPrior prior;
 
   [[nodiscard]] double lower() const {
+    if (role == Role::degrees_of_freedom) return std::log(1e-3);
     return log_unit + std::log(role == Role::length_scale ? 1e-3 : role == Role::variance ? 1e-12 : 1e-14);
   }
   [[nodiscard]] double upper() const {
+    if (role == Role::degrees_of_freedom) return std::log(1e4);
     return log_unit + std::log(role == Role::length_scale ? 1e3 : role == Role::variance ? 1e4 : 1e2);
   }
   /// Where draws for further starts are taken, uniform in the logarithm.
   [[nodiscard]] double draw(Random& random) const {
     const double u = random.uniform();
-    const double low = role == Role::length_scale ? 0.02 : role == Role::variance ? 1e-3 : 1e-6;
-    const double high = role == Role::length_scale ? 50 : 10;
+    const bool degrees = role == Role::degrees_of_freedom;
+    const double low = degrees ? 0.1 : role == Role::length_scale ? 0.02 : role == Role::variance ? 1e-3 : 1e-6;
+    const double high = degrees ? 1e3 : role == Role::length_scale ? 50 : 10;
     return log_unit + std::log(low) + u * std::log(high / low);
   }
   /// Negative log prior density but for a constant, and its derivative added to `slope`.
@@ -60,7 +63,7 @@ double likely(const LogNormalPrior& prior, double without) {
   return std::log(prior.log_sd > 0 ? prior.median : without);
 }
 
-/// The hyperparameters in the order of `log_hyperparameters`, noise last.
+/// The hyperparameters in the order of `Evidence`.
 std::vector<Hyperparameter> hyperparameters(const Kernel& kernel, const Matrix& X, const MvgpOptions& options) {
   const Vector range = input_ranges(X);
   std::vector<Hyperparameter> all;
@@ -76,6 +79,8 @@ std::vector<Hyperparameter> hyperparameters(const Kernel& kernel, const Matrix& 
     }
   }
   all.push_back({Role::noise, 0, likely(options.noise, 0.01), options.noise});
+  // From nu = d + 2, that of the Gaussian process.
+  if (options.process == ProcessType::student_t) all.push_back({Role::degrees_of_freedom, 0, 0, options.delta});
   return all;
 }
 

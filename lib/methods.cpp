@@ -24,6 +24,8 @@ const std::vector<Method>& methods() {
        skill_method(SkillStructure::axis)},
       {"skill-full", "one model an axis from all of dP", false, primitives, skill_method(SkillStructure::full)},
       {"skill-joint", "one model for all axes", false, primitives, skill_method(SkillStructure::joint)},
+      {"skill-student-t", "the default skill with a Student-t process", false, primitives,
+       skill_method(SkillStructure::automatic, ProcessType::student_t)},
       {"paper", "--paper on dmp-fit and mvgpr-train: one model an axis (Sec. III-C)", false, paper,
        paper_method(SkillStructure::axis)},
       {"paper-full", "--paper with all of dP as input (Table 1)", false, paper, paper_method(SkillStructure::full)},

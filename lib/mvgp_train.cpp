@@ -49,6 +49,9 @@ void check_arguments(const Matrix& X, const Matrix& W, const Matrix& A, const Mv
   if (!(options.evidence_power > 0 && options.evidence_power <= 1)) {
     throw DataError("mvgp.bad_prior", "the power of the evidence must be in (0, 1]");
   }
+  if (options.process == ProcessType::student_t && options.nu != 0 && !(options.nu > static_cast<double>(d) + 1)) {
+    throw DataError("mvgp.bad_prior", "nu of a Student-t process must be greater than d + 1");
+  }
   const auto& noise = options.row_noise;
   if (noise.size() > 0 && (noise.size() != X.rows() || !noise.allFinite() || (noise.array() <= 0).any())) {
     throw DataError("mvgp.shape", "row noise needs one positive factor a row");
@@ -133,6 +136,7 @@ MvgpOptions default_mvgp_options(int p) {
   options.variance = {0.1, 2.0};
   options.noise = {0.1, 2.0};
   options.smallest_share = 1e-7;
+  options.delta = {1.0, 2.0};
   return options;
 }
 
@@ -143,6 +147,7 @@ std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::
   // A mean known beforehand leaves a residual with zero mean.
   const bool known = !coefficients.empty() || options.coefficients.size() > 0;
   const MeanType estimated = known ? MeanType::zero : options.mean;
+  const bool student_t = options.process == ProcessType::student_t;
   for (std::size_t g = 0; g < W.size(); ++g) {
     check_arguments(X, W[g], A, options);
     MvgpModel model;
@@ -169,16 +174,19 @@ std::vector<MvgpModel> train_mvgp(const Eigen::Ref<const Matrix>& X, const std::
   if (options.optimise) {
     Kernel kernel = models.front().kernel;
     scale_linear_terms(kernel, models.front().X);
-    const EvidenceSettings settings{options.omega, estimated, {}, 0, options.row_noise};
+    const EvidenceSettings settings{options.omega, estimated, {}, 0, options.row_noise, options.process};
     const Vector theta = hyperparameters_of_maximum_evidence(
         models.front().X, principal(blocks, options.smallest_share), kernel, settings, options);
-    kernel = with_log_hyperparameters(kernel, theta.head(theta.size() - 1));
+    const Eigen::Index of_kernel = log_hyperparameters(kernel).size();
+    kernel = with_log_hyperparameters(kernel, theta.head(of_kernel));
     for (auto& model : models) {
       model.kernel = kernel;
-      model.noise_variance = std::exp(theta(theta.size() - 1));
+      model.noise_variance = std::exp(theta(of_kernel));
+      if (student_t) model.nu = static_cast<double>(model.Y.cols()) + 1 + std::exp(theta(of_kernel + 1));
     }
   }
   for (auto& model : models) {
+    if (student_t) model.psi *= model.nu - static_cast<double>(model.Y.cols()) - 1;
     if (options.row_noise.size() > 0) model.noise = model.noise_variance * options.row_noise;
     complete(model, known);
   }

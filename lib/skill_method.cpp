@@ -35,14 +35,15 @@ Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool r
 
 }  // namespace
 
-Trainer skill_method(SkillStructure structure) {
-  return [structure](const Fold& fold, const PreparationOptions& options) {
+Trainer skill_method(SkillStructure structure, ProcessType process) {
+  return [structure, process](const Fold& fold, const PreparationOptions& options) {
     std::vector<SkillRow> rows;
     for (const auto* target : fold) {
       for (const auto& row : target->examples) rows.push_back({target->labels, row.primitive});
     }
     SkillOptions learning;
     learning.structure = structure;
+    learning.process = process;
     learning.seed = options.seed;
     return learnt(rows, learning, options.road == Road::references);
   };

@@ -82,6 +82,7 @@ MvgpOptions process_options(const SkillOptions& options, const SkillModel& model
     if (wanted == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
   }
   process.omega = options.omega;
+  process.process = options.process;
   process.starts = options.starts;
   process.seed = options.seed;
   process.jobs = options.jobs;
@@ -214,6 +215,7 @@ void train_processes(Skill& skill, const std::vector<SkillRow>& rows, const Skil
       const MvgpModel& known = options.hyperparameters->models.at(first).process;
       process.kernel = known.kernel;
       process.noise_variance = known.noise_variance;
+      process.nu = known.nu;
       process.optimise = false;
     }
     std::vector<Matrix> weights, coefficients;

@@ -37,10 +37,15 @@ Matrix metric_of(const Skill& skill) {
   return skill.models.front().process.output_transform.topLeftCorner(N, N);
 }
 
+/// A row of residuals as weights are kept, D x N.
+Matrix by_axis(const Matrix& residuals, std::size_t row, Eigen::Index N) {
+  const Vector all = residuals.row(static_cast<Eigen::Index>(row)).transpose();
+  return all.reshaped(N, all.size() / N).transpose();
+}
+
 TargetTempo target_tempo(const Matrix& metric, const std::vector<SkillRow>& rows, std::vector<std::size_t> group,
                          const Matrix& residuals) {
   const Eigen::Index N = metric.rows();
-  const Eigen::Index D = rows.front().primitive.dimensions();
   const double count = static_cast<double>(group.size());
   Dmp predicted = rows[group.front()].primitive;
   predicted.weights.setZero();
@@ -50,7 +55,7 @@ TargetTempo target_tempo(const Matrix& metric, const std::vector<SkillRow>& rows
     const Dmp& row = rows[i].primitive;
     predicted.start += row.start / count;
     predicted.goal += row.goal / count;
-    const Matrix missed = residuals.row(static_cast<Eigen::Index>(i)).reshaped<Eigen::RowMajor>(D, N);
+    const Matrix missed = by_axis(residuals, i, N);
     // W = Y A^-1
     predicted.weights +=
         (row.weights - metric.transpose().partialPivLu().solve(missed.transpose()).transpose()) / count;
@@ -60,7 +65,7 @@ TargetTempo target_tempo(const Matrix& metric, const std::vector<SkillRow>& rows
   const double length = direction.squaredNorm();
   tempo.early = Vector::Zero(static_cast<Eigen::Index>(tempo.rows.size()));
   for (std::size_t k = 0; length > 0 && k < tempo.rows.size(); ++k) {
-    const auto missed = residuals.row(static_cast<Eigen::Index>(tempo.rows[k])).reshaped<Eigen::RowMajor>(D, N);
+    const Matrix missed = by_axis(residuals, tempo.rows[k], N);
     tempo.early[static_cast<Eigen::Index>(k)] = missed.cwiseProduct(direction).sum() / length;
   }
   tempo.mean = tempo.early.mean();

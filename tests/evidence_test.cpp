@@ -256,3 +256,79 @@ TEST_CASE("blocks that share K' add their evidence and its gradient") {
   CHECK(value == Approx(sum).epsilon(1e-12));
   CHECK((gradient - sum_of_gradients).norm() < 1e-9 * (1 + gradient.norm()));
 }
+
+TEST_CASE("the digamma function is the derivative of ln Gamma") {
+  CHECK(digamma(1) == Approx(-std::numbers::egamma).epsilon(1e-14));
+  CHECK(digamma(0.5) == Approx(-std::numbers::egamma - 2 * std::numbers::ln2).epsilon(1e-14));
+  for (const double x : {0.01, 0.7, 3.3, 9.99, 10.01, 250.0}) {
+    const double h = 1e-3 * x;
+    const double wide = (std::lgamma(x + 2 * h) - std::lgamma(x - 2 * h)) / (4 * h);
+    const double narrow = (std::lgamma(x + h) - std::lgamma(x - h)) / (2 * h);
+    CHECK(digamma(x) == Approx((4 * narrow - wide) / 3).epsilon(1e-9));
+    CHECK(digamma(x + 1) == Approx(digamma(x) + 1 / x).epsilon(1e-13).margin(1e-13));
+  }
+}
+
+namespace {
+
+/// ln of the density of the matrix-variate t with nu_t degrees of freedom, T_{n,d}(nu_t, 0, Sigma, Omega), as Gupta and
+/// Nagar (Matrix Variate Distributions, definition 4.2.1) write it: gamma functions of order n, an n x n determinant.
+double log_matrix_t(const Matrix& R, double nu_t, const Matrix& Sigma, const Matrix& Omega) {
+  const int n = static_cast<int>(R.rows());
+  const int d = static_cast<int>(R.cols());
+  const Matrix inside = Matrix::Identity(n, n) + Sigma.inverse() * R * Omega.inverse() * R.transpose();
+  return log_gamma_d(n, (nu_t + d + n - 1) / 2) - log_gamma_d(n, (nu_t + n - 1) / 2) -
+         0.5 * n * d * std::log(std::numbers::pi) - 0.5 * d * std::log(Sigma.determinant()) -
+         0.5 * n * std::log(Omega.determinant()) - (nu_t + d + n - 1) / 2 * std::log(inside.determinant());
+}
+
+Vector with_delta(const Kernel& kernel, double noise_variance, double delta) {
+  Vector theta(log_hyperparameters(kernel).size() + 2);
+  theta << theta_of(kernel, noise_variance), std::log(delta);
+  return theta;
+}
+
+}  // namespace
+
+TEST_CASE("a Student-t process has the density of the matrix-variate t") {
+  const int d = GENERATE(1, 4, 11);  // 7 rows
+  const double delta = GENERATE(0.03, 1.0, 40.0);
+  const Matrix X = random_matrix(7, 2, 101);
+  const Matrix Y = random_matrix(7, d, 102);
+  const Matrix psi = random_positive(d, 103);
+  const Kernel kernel = sum_kernel(2);
+  EvidenceSettings settings{OmegaRule::integrated, MeanType::zero, psi, 0, {}, ProcessType::student_t};
+  Evidence evidence(X, Y, kernel, settings);
+  const Matrix K = covariance(kernel, X) + 0.2 * Matrix::Identity(7, 7);
+  const double value = evidence(with_delta(kernel, 0.2, delta));
+  CHECK(-value == Approx(log_matrix_t(Y, delta + 2, K, delta * psi)).epsilon(1e-10));
+  // The Gaussian process with that prior of Omega; with the default's nu = d + 2 where delta = 1.
+  settings.process = ProcessType::gaussian;
+  settings.nu = d + 1 + delta;
+  settings.psi = delta * psi;
+  CHECK(value == Approx(Evidence(X, Y, kernel, settings)(theta_of(kernel, 0.2))).epsilon(1e-12));
+}
+
+TEST_CASE("the gradient of a Student-t process is that of differences, for blocks of several sizes") {
+  const MeanType mean = GENERATE(MeanType::zero, MeanType::linear);
+  const double delta = GENERATE(0.05, 3.0, 500.0);
+  const Matrix X = random_matrix(9, 2, 111);
+  const Kernel kernel = additive_kernel(2);
+  std::vector<OutputBlock> blocks;
+  for (const int d : {1, 4, 12}) {
+    blocks.push_back({random_matrix(9, d, 112 + static_cast<std::uint64_t>(d)), random_positive(d, 115), 0});
+  }
+  Evidence evidence(X, blocks, kernel, {OmegaRule::integrated, mean, {}, 0, {}, ProcessType::student_t});
+  const Vector theta = with_delta(kernel, 0.1, delta);
+  REQUIRE(theta.size() == evidence.size());
+  Vector gradient;
+  evidence(theta, &gradient);
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    const auto central = [&](double h) {
+      const Vector step = h * Vector::Unit(theta.size(), i);
+      return (evidence(theta + step) - evidence(theta - step)) / (2 * h);
+    };
+    const double expected = (4 * central(5e-4) - central(1e-3)) / 3;
+    CHECK(std::abs(gradient(i) - expected) < 1e-6 * std::max(1.0, std::abs(expected)));
+  }
+}

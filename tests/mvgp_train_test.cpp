@@ -292,3 +292,38 @@ TEST_CASE("a mean that is known beforehand leaves its residual to the process") 
   CHECK((predict(model, x).mean - expected).norm() < 1e-6 * (1 + expected.norm()));
   CHECK(log_evidence(model) == Approx(model.log_marginal_likelihood).epsilon(1e-12));
 }
+
+TEST_CASE("a Student-t process has at least the evidence of the Gaussian one, and finds how sure its prior is") {
+  const Matrix X = smooth_rows(14, 2, 8, 0.05, 301).X;
+  // Outputs of one size and of sizes that differ by a hundred, so that a prior of equal ones is right and wrong.
+  const Matrix equal = smooth_rows(14, 2, 8, 0.05, 301).Y;
+  const Matrix unequal = equal * Vector(Vector::LinSpaced(8, 0, -4.6).array().exp()).asDiagonal();
+  MvgpOptions options = paper_mvgp_options(2);
+  std::vector<double> delta;
+  for (const Matrix& Y : {equal, unequal}) {
+    options.process = ProcessType::gaussian;
+    const MvgpModel gaussian = train_mvgp(X, Y, {}, options);
+    options.process = ProcessType::student_t;
+    const MvgpModel student = train_mvgp(X, Y, {}, options);
+    CHECK(student.log_marginal_likelihood >= gaussian.log_marginal_likelihood - 1e-6);
+    delta.push_back(student.nu - 9);
+    CHECK(student.psi(0, 0) == Approx(delta.back() * gaussian.psi(0, 0)).epsilon(1e-12));
+    CHECK(predict(student, X.row(0).transpose()).degrees_of_freedom == Approx(delta.back() + 2 + 14));
+    // The file's fields say the same again.
+    CHECK(log_evidence(student) == Approx(student.log_marginal_likelihood).epsilon(1e-12));
+  }
+  CHECK(delta[1] < delta[0]);
+
+  // One nu for groups that share their hyperparameters; taken as it is where nothing is searched for.
+  const auto shared = train_mvgp(X, {equal, unequal}, {}, options);
+  CHECK(shared[0].nu == shared[1].nu);
+  options.optimise = false;
+  options.nu = shared[0].nu;
+  CHECK(train_mvgp(X, equal, {}, options).psi.isApprox(shared[0].psi, 1e-12));
+  options.nu = 9;
+  CHECK(id_of([&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.bad_prior");
+  options = paper_mvgp_options(2);
+  options.process = ProcessType::student_t;
+  options.omega = OmegaRule::ml;
+  CHECK(id_of([&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.omega_unbounded");
+}

@@ -12,7 +12,7 @@ using namespace lfd;
 
 namespace {
 
-constexpr std::size_t method_count = 19;
+constexpr std::size_t method_count = 20;
 
 /// Every method, with few components so that it is quick.
 ValidationOptions every_method() {

@@ -49,6 +49,14 @@ int main(int argc, char** argv) {
                  "mean function; line (auto, but zero with --paper): the straight minimum-jerk motion");
   program.choice("--omega", options.omega, {{"integrated", OmegaRule::integrated}, {"ml", OmegaRule::ml}},
                  "covariance between weights: integrated out, or free (needs more rows than weights)");
+  program.choice("--process", options.process,
+                 {{"gaussian", ProcessType::gaussian}, {"student-t", ProcessType::student_t}},
+                 "multivariate Gaussian process, or Student-t: degrees of freedom found with the others");
+  program.check([&] {
+    if (options.process == ProcessType::student_t && options.omega == OmegaRule::ml) {
+      throw UsageError("usage.exclusive", "--process student-t has its Omega integrated; without --omega ml");
+    }
+  });
   program.choice("--calibration", calibrated, {{"targets", true}, {"none", false}},
                  "scale the bands by what is missed on targets left out in turn, or trust the process");
   program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");

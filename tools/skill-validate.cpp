@@ -1,7 +1,11 @@
 // How far a skill is from targets that it has not seen, beside opponents: leave-one-target-out, or test targets.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "lfdtools/cli/program.hpp"
+#include "lfdtools/cli/suggestion_report.hpp"
 #include "lfdtools/cli/validation_report.hpp"
 #include "lfdtools/io/folds.hpp"
 #include "lfdtools/io/targets.hpp"
@@ -33,6 +37,46 @@ void write_file(const std::string& name, void (*write)(const Validation&, Output
   out.finish();
 }
 
+/// low and high of each signal in turn.
+/// @throws UsageError [usage.arity], [usage.range]
+GoalBox goal_box(const std::vector<double>& region) {
+  if (region.empty() || region.size() % 2 != 0) {
+    throw UsageError("usage.arity", "--suggest takes two numbers a signal, the least and the greatest of each in turn");
+  }
+  const Eigen::Map<const Matrix> ends(region.data(), 2, static_cast<Eigen::Index>(region.size() / 2));
+  if ((ends.row(0).array() > ends.row(1).array()).any()) {
+    throw UsageError("usage.range", "--suggest: the box is empty, a least value is over the greatest");
+  }
+  return {ends.row(0).transpose(), ends.row(1).transpose()};
+}
+
+/// The default skill of all targets, and what to demonstrate next.
+void suggest_target(const std::vector<TargetDemonstrations>& targets, const std::vector<std::string>& columns,
+                    const GoalBox& box, const PreparationOptions& preparation, cli::Run& run) {
+  if (box.low.size() != static_cast<Eigen::Index>(columns.size())) {
+    throw UsageError("usage.arity", fmt::format("--suggest takes {} numbers here, two a signal, not {}",
+                                                2 * columns.size(), 2 * box.low.size()));
+  }
+  std::vector<SkillRow> rows;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const TrainingTarget target = training_target(targets[i].labels, recorded(targets[i], preparation.alignment),
+                                                  preparation, {.primitives = true}, i);
+    for (std::size_t k = 0; k < target.examples.size(); ++k) {
+      rows.push_back({targets[i].demonstration_labels[k], target.examples[k].primitive});
+    }
+  }
+  SkillOptions options;
+  options.seed = run.seed();
+  options.jobs = run.jobs();
+  options.kernel = choose_kernel(columns, rows, options);
+  Skill skill = train_skill(columns, rows, options);
+  skill.calibration = calibrate(skill, rows, options);
+  const double repetitions = std::round(static_cast<double>(rows.size()) / static_cast<double>(targets.size()));
+  const Suggestion suggestion = suggest(SkillPredictor(std::move(skill)), box, repetitions);
+  cli::report(suggestion, columns, rows, run);
+  cli::write_suggestion(suggestion, columns, rows, run.output());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -46,6 +90,7 @@ int main(int argc, char** argv) {
   std::string test;
   bool noise_free = false;
   std::string reliability;
+  std::optional<std::vector<double>> region;
   cli::Program program("skill-validate",
                        "Generate targets that were left out, or those of a test file, from the others.");
   program.reads("demonstrations CSV").uses_jobs().uses_seed().uses_columns();
@@ -73,9 +118,21 @@ int main(int argc, char** argv) {
     if (test == "-") throw UsageError("usage.value", "--test takes a file, not standard input");
     if (noise_free && test.empty()) throw UsageError("usage.missing", "--noise-free speaks of the paths of --test");
   });
+  program.numbers("--suggest", region, {}, "instead: the target in a box of goals that would teach most");
+  program.check([&] {
+    if (!region) return;
+    (void)goal_box(*region);
+    for (const char* other :
+         {"--methods", "--road", "--folds", "--test", "--repetitions", "--components", "--table", "--reliability"}) {
+      if (program.given(other)) {
+        throw UsageError("usage.exclusive", fmt::format("--suggest judges no methods, so it excludes {}", other));
+      }
+    }
+  });
   program.example("skill-validate demos.csv --table", "every method on every target");
   program.example("skill-validate demos.csv --methods skill,affine -o scores.csv --table=table.txt", "CSV and table");
   program.example("skill-validate demos.csv --test truth.csv --noise-free --table", "against what the teacher meant");
+  program.example("skill-validate demos.csv --suggest -0.2,0.3,0.8,0.8,0.1,0.5", "what to demonstrate next");
   return program.run(argc, argv, [&](cli::Run& run) {
     check_names({run.options().output, table.value_or(""), reliability, run.options().summary});
     const DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
@@ -88,6 +145,7 @@ int main(int argc, char** argv) {
     if (repetitions) rows.repetitions = static_cast<std::size_t>(*repetitions);
     rows.seed = run.seed();
     options.jobs = run.jobs();
+    if (region) return suggest_target(targets, source.columns(), goal_box(*region), rows, run);
     const Validation validation =
         test.empty()
             ? leave_one_target_out(targets, options)

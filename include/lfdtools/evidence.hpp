@@ -13,6 +13,15 @@ enum class OmegaRule {
   ml           ///< the paper's reading: Omega free, at its maximum S / n
 };
 
+/// Which process, of those of Chen, Wang and Gorban (reference [34] of the paper).
+enum class ProcessType {
+  gaussian,  ///< nu of the inverse-Wishart is given
+  /// The matrix-variate t, MT(nu_t, M, K', Omega), whose Omega is fixed up to its scale: left free its likelihood has
+  /// no bound, as with the Gaussian process. It is the evidence of an integrated Omega with nu = nu_t + d - 1, and its
+  /// nu is one of the hyperparameters.
+  student_t
+};
+
 /// Rows of the basis of an explicit mean: n x 0, n x 1 (ones) or n x (1+p) (ones, X).
 [[nodiscard]] Matrix mean_basis(MeanType mean, const Eigen::Ref<const Matrix>& X);
 
@@ -23,6 +32,9 @@ struct EvidenceSettings {
   Matrix psi;        ///< 1 x 1: psi times the identity; or d x d, positive definite [unit of Y squared]
   double nu = 0;     ///< degrees of freedom of the inverse-Wishart, > d - 1
   Vector row_noise;  ///< factor on the noise variance of each row, n, positive; empty: ones
+  /// student_t: nu and Psi follow from theta, nu = d + 1 + delta and Psi = delta times the psi given here, so that psi
+  /// is the prior mean of Omega whatever nu is; delta = nu_t - 2 is how many rows the prior counts for in E[Omega | Y].
+  ProcessType process = ProcessType::gaussian;
 };
 
 /// Outputs with an Omega of their own.
@@ -33,7 +45,8 @@ struct OutputBlock {
 };
 
 /// -ln p(Y | X, theta) for Y ~ MN(M, K', Omega), K' = K + sigma_n^2 diag(row_noise), as a function of
-/// theta = (log_hyperparameters of the kernel, ln sigma_n^2). With S = (Y-M)^T K'^-1 (Y-M):
+/// theta = (log_hyperparameters of the kernel, ln sigma_n^2) and, of a Student-t process, ln delta. With S = (Y-M)^T
+/// K'^-1 (Y-M):
 ///   integrated  nd/2 ln pi + d/2 ln|K'| + (n+nu)/2 ln|Psi+S| - nu/2 ln|Psi| - lnGamma_d((n+nu)/2) + lnGamma_d(nu/2)
 ///   ml          nd/2 ln 2pi + d/2 ln|K'| + n/2 ln|S/n| + nd/2
 /// Both depend on Y only through Y Psi^-1 Y^T, so Y is turned once into at most n columns: an evaluation costs n^3
@@ -55,7 +68,7 @@ class Evidence {
   Evidence(const Eigen::Ref<const Matrix>& X, const std::vector<OutputBlock>& blocks, const Kernel& kernel,
            const EvidenceSettings& settings);
 
-  [[nodiscard]] Eigen::Index size() const { return kernel_size_ + 1; }
+  [[nodiscard]] Eigen::Index size() const { return kernel_size_ + (student_t_ ? 2 : 1); }
 
   /// Value at theta, and with it the gradient when a pointer is given. +inf if K' is not numerically positive definite.
   double operator()(const Vector& theta, Vector* gradient = nullptr);
@@ -64,7 +77,7 @@ class Evidence {
   struct Block {
     Matrix Y;       // n x r, r = min(n, d): Y Psi^-1/2 turned
     double d;       // outputs
-    double weight;  // n + nu or n
+    double weight;  // n + nu or n; of a Student-t process set by theta
     Matrix Z, S;    // working memory
   };
   [[nodiscard]] Block turned(const OutputBlock& outputs);
@@ -75,7 +88,7 @@ class Evidence {
   Vector row_noise_;
   Matrix H_;  // n x q, basis of the explicit mean
   Eigen::Index kernel_size_, n_;
-  bool integrated_;
+  bool integrated_, student_t_;
   double constant_ = 0;  // terms without theta
   std::vector<Block> blocks_;
   Matrix K_;  // working memory

@@ -19,6 +19,7 @@ struct TargetDemonstrations {
   Labels labels;
   std::vector<Trajectory> demonstrations;
   bool noise_free = false;  ///< the one path is the intention itself: a band about it needs no noise of demonstrations
+  std::vector<Labels> demonstration_labels = {};  ///< of each, where they are known
 };
 
 /// What one training row is.

@@ -47,11 +47,15 @@ struct MvgpOptions {
   /// Omega is Psi, so all kernel and noise variances are shares of the data's mean square, and Psi itself needs no
   /// optimising.
   Matrix psi;
+  /// student_t: nu, over d + 1, is searched for with the others, one for all groups, and Psi = (nu - d - 1) times `psi`
+  /// of above, so that this stays the prior mean of Omega and kernel variances keep their meaning.
+  ProcessType process = ProcessType::gaussian;
   double nu = 0;     ///< 0: d + 2
   Vector row_noise;  ///< factor on the noise variance of each row (0.1: mean of ten demonstrations); empty: ones
   LogNormalPrior length_scale;  ///< median in units of each input's range
   LogNormalPrior variance;      ///< of the terms of a sum
   LogNormalPrior noise;
+  LogNormalPrior delta;  ///< nu - d - 1 of a Student-t process
   /// Power of the evidence beside the priors, in (0, 1]. Rows that repeat each other say less than the process, for
   /// which they are independent given the motion meant, believes: with targets / rows a target counts once.
   double evidence_power = 1;
@@ -73,7 +77,8 @@ struct MvgpOptions {
 [[nodiscard]] MvgpOptions default_mvgp_options(int p);
 
 /// Hyperparameters at the maximum of evidence (times priors, where given) inside a box: length scales 1e-3 to 1e3 times
-/// the range of their input, variances 1e-12 to 1e4, noise variance 1e-14 to 1e2.
+/// the range of their input, variances 1e-12 to 1e4, noise variance 1e-14 to 1e2, nu - d - 1 of a Student-t process
+/// 1e-3 to 1e4.
 /// @param X  n x p, goal - start of each row [m], n >= 1
 /// @param W  n x d, weights
 /// @param A  d x d, invertible: distances of W A are distances of trajectories; empty: the identity

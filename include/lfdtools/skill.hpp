@@ -87,10 +87,11 @@ struct SkillOptions {
   SkillMean mean = SkillMean::automatic;
   SkillTempo tempo = SkillTempo::automatic;
   OmegaRule omega = OmegaRule::integrated;
+  ProcessType process = ProcessType::gaussian;
   int starts = 5;
   std::uint64_t seed = 1;
   unsigned jobs = 1;
-  /// Kernels, noise and inputs of this skill are taken as they are, nothing is searched for.
+  /// Kernels, noise, nu and inputs of this skill are taken as they are, nothing is searched for.
   const Skill* hyperparameters = nullptr;
 };
 

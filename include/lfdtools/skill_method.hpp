@@ -6,9 +6,9 @@
 
 namespace lfd {
 
-/// The default skill with the given structure, its rows those of the road, its bands calibrated on the targets of the
-/// fold. Needs primitives.
-[[nodiscard]] Trainer skill_method(SkillStructure structure);
+/// The default skill with the given structure and process, its rows those of the road, its bands calibrated on the
+/// targets of the fold. Needs primitives.
+[[nodiscard]] Trainer skill_method(SkillStructure structure, ProcessType process = ProcessType::gaussian);
 
 /// The published formulation: rows TrainingTarget::paper, SkillOptions::paper. Needs them.
 /// @param structure  axis (Sec. III-C) or full (Table 1)

@@ -12,6 +12,7 @@ namespace {
 TargetDemonstrations taken(Pool pool, bool noise_free) {
   TargetDemonstrations target{pool.labels, {}, noise_free};
   for (auto& recording : pool.recordings) {
+    target.demonstration_labels.push_back(recording.demonstration.labels);
     target.demonstrations.push_back(std::move(recording.demonstration.trajectory));
   }
   return target;

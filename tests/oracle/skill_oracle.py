@@ -102,6 +102,7 @@ check(checks, "paper", train(reference, ["--fit", "lwr"], "--paper"), goals, Tru
 check(checks, "paper, full", train(reference, ["--fit", "lwr"], "--paper", "--model", "full"), goals, True)
 check(checks, "paper, joint", train(reference, ["--fit", "lwr", "-n", 8], "--paper", "--model", "joint"), goals, True)
 check(checks, "default", train(reference, []), goals, False)
+check(checks, "student-t", train(reference, [], "--process", "student-t"), goals, False)
 check(checks, "default, demonstrations", train(aligned, []), goals, False)
 # Holes off the plane, as an explicit linear mean needs rows that span every direction.
 experiment = json.load(open(os.path.join(SHARE, "peg-in-hole", "A.json")))

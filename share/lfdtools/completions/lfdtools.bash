@@ -12,12 +12,12 @@ _lfdtools_options() {
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common -j --jobs --seed --paper --model --inputs --kernel --mean --omega" \
-                      "--calibration --starts" ;;
+                      "--process --calibration --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --test --noise-free --repetitions" \
-                         "--trim -n --basis -k --components --table --reliability" ;;
+                         "--trim -n --basis -k --components --table --reliability --suggest" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
     ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
@@ -46,8 +46,9 @@ _lfdtools_words() {
     mvgpr-train:--inputs) echo "auto change change+start" ;;
     mvgpr-train:--calibration) echo "targets none" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
-    skill-validate:--methods) echo "skill skill-axis skill-full skill-joint paper paper-full line nearest" \
-                                   "nearest-deviation mean mean-deviation moved-goal affine affine-means" \
+    mvgpr-train:--process) echo "gaussian student-t" ;;
+    skill-validate:--methods) echo "skill skill-axis skill-full skill-joint skill-student-t paper paper-full line" \
+                                   "nearest nearest-deviation mean mean-deviation moved-goal affine affine-means" \
                                    "affine-prior affine-ends gpr promp kmp" ;;
     skill-validate:--road) echo "recordings demonstrations references" ;;
     skill-plot:--kind) echo "auto motions planes time weights errors reliability" ;;
@@ -62,7 +63,7 @@ _lfdtools_words() {
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
-    *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start) return 2 ;;
+    *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start | *:--suggest) return 2 ;;
     *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--max-*) return 2 ;;
     *) return 1 ;;
   esac
