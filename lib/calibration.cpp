@@ -36,8 +36,9 @@ struct Miss {
 };
 
 /// Mean reach of the rows of a target.
-Reach mean_reach(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group, const Vector& usual_start) {
-  Reach reach(Vector::Zero(usual_start.size()), -usual_start);
+Reach mean_reach(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group, const Skill& skill) {
+  Reach reach(Vector::Zero(skill.start.size()), -skill.start);
+  reach.teacher = teacher_number(skill.rows, rows[group.front()].labels.teacher);
   for (const std::size_t i : group) {
     reach.change += rows[i].change() / static_cast<double>(group.size());
     reach.offset += rows[i].primitive.start / static_cast<double>(group.size());
@@ -49,7 +50,7 @@ Reach mean_reach(const std::vector<SkillRow>& rows, const std::vector<std::size_
 /// response to the mean change, so what differs is the forced part alone.
 Samples error_on(const SkillPredictor& predictor, const std::vector<SkillRow>& rows,
                  const std::vector<std::size_t>& group, const Matrix& R) {
-  const Reach reach = mean_reach(rows, group, predictor.skill().start);
+  const Reach reach = mean_reach(rows, group, predictor.skill());
   Matrix force = predictor.weights(reach).mean;
   if (predictor.skill().dmp.scaling == DmpScaling::goal) force = reach.change.asDiagonal() * force;
   for (const std::size_t i : group) {
@@ -65,7 +66,7 @@ Miss miss(const SkillPredictor& searched, const SkillPredictor& known, const std
   Miss result;
   result.repetitions = static_cast<double>(group.size());
   result.error = error_on(searched, rows, group, R);
-  result.variance = position_variance(known, mean_reach(rows, group, known.skill().start), linspace(0, 1, phase_count));
+  result.variance = position_variance(known, mean_reach(rows, group, known.skill()), linspace(0, 1, phase_count));
   return result;
 }
 

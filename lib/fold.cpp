@@ -82,7 +82,7 @@ JudgedTarget judged_target(const Labels& labels, const std::vector<Trajectory>& 
   target.labels = labels;
   target.mean_path = mean_path(recordings, phase_count);
   target.query = {target.mean_path.row(0).transpose(), target.mean_path.row(phase_count - 1).transpose(),
-                  static_cast<double>(recordings.size())};
+                  static_cast<double>(recordings.size()), labels.teacher};
   const Vector phases = linspace(0, 1, phase_count);
   double squares = 0;
   for (const auto& recording : recordings) {

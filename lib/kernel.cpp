@@ -47,6 +47,12 @@ void radial(KernelType type, double variance, Column&& k, Slope&& slope) {
   k = variance * (1.0 + k + k.square() / 3.0) * (-k).exp();
 }
 
+/// 1 where a term holds between the rows of A and one point, else 0, m.
+template <typename Rows, typename Point>
+auto agreement(const KernelTerm& term, const Rows& A, const Point& b) {
+  return (A.col(term.within).array() == b(term.within)).template cast<double>();
+}
+
 /// Squared scaled distances of the rows of A to one point, m.
 template <typename Rows, typename Point>
 Eigen::ArrayXd squared_distances(const Rows& A, const Point& b) {
@@ -104,6 +110,15 @@ Kernel sum_kernel(int p) {
   return sum_kernel(std::vector<std::vector<int>>{se_ard_kernel(p).terms.front().inputs});
 }
 
+Kernel with_own_part(Kernel kernel, const std::vector<std::vector<int>>& groups, int within) {
+  kernel.terms.push_back({KernelType::constant, 1, {}, {}, within});
+  for (const auto& inputs : groups) {
+    kernel.terms.push_back(
+        {KernelType::linear, 1, inputs, Vector::Ones(static_cast<Eigen::Index>(inputs.size())), within});
+  }
+  return kernel;
+}
+
 void check_kernel(const Kernel& kernel, int p) {
   if (kernel.terms.empty()) throw DataError("kernel.no_terms", "the kernel has no terms");
   for (const auto& term : kernel.terms) {
@@ -115,6 +130,9 @@ void check_kernel(const Kernel& kernel, int p) {
     if (repeated || outside || inputs.empty() != (term.type == KernelType::constant)) {
       throw DataError("kernel.bad_inputs", "a " + name + " term needs inputs from 0 to " + std::to_string(p - 1) +
                                                ", each once (a constant term none)");
+    }
+    if (term.within < -1 || term.within >= p) {
+      throw DataError("kernel.bad_inputs", "a " + name + " term holds within an input that there is not");
     }
     const auto& l = term.length_scales;
     if (l.size() != static_cast<Eigen::Index>(inputs.size()) || !l.allFinite() || (l.array() <= 0).any()) {
@@ -130,19 +148,19 @@ Matrix covariance(const Kernel& kernel, const Eigen::Ref<const Matrix>& A, const
   Matrix K = Matrix::Zero(A.rows(), B.rows());
   Eigen::ArrayXd slope(A.rows());
   for (const auto& term : kernel.terms) {
-    if (term.type == KernelType::constant) {
-      K.array() += term.variance;
-      continue;
-    }
     const Matrix a = scaled_inputs(term, A);
     const Matrix b = scaled_inputs(term, B);
-    if (term.type == KernelType::linear) {
-      K.noalias() += term.variance * (a * b.transpose());
-      continue;
-    }
     for (Eigen::Index i = 0; i < b.rows(); ++i) {
-      Eigen::ArrayXd k = squared_distances(a, b.row(i));
-      radial(term.type, term.variance, k, slope);
+      Eigen::ArrayXd k;
+      if (term.type == KernelType::constant) {
+        k.setConstant(A.rows(), term.variance);
+      } else if (term.type == KernelType::linear) {
+        k = term.variance * (a * b.row(i).transpose()).array();
+      } else {
+        k = squared_distances(a, b.row(i));
+        radial(term.type, term.variance, k, slope);
+      }
+      if (term.within >= 0) k *= agreement(term, A, B.row(i));
       K.col(i).array() += k;
     }
   }
@@ -196,7 +214,7 @@ KernelMatrix::KernelMatrix(const Eigen::Ref<const Matrix>& X, const Kernel& kern
   check_kernel(kernel, static_cast<int>(X.cols()));
   for (std::size_t t = 0; t < K_.size(); ++t) {
     const KernelType type = kernel.terms[t].type;
-    if (type == KernelType::constant) continue;
+    if (type == KernelType::constant && kernel.terms[t].within < 0) continue;
     K_[t].setZero(X.rows(), X.rows());
     if (is_radial(type) && type != KernelType::se_ard) slope_[t].setZero(X.rows(), X.rows());
   }
@@ -213,12 +231,14 @@ void KernelMatrix::evaluate(const Kernel& kernel, Matrix& K) {
     const Matrix x = scaled_inputs(term, X_);
     for (Eigen::Index i = 0; i < n; ++i) {
       auto sum = K.col(i).tail(n - i).array();
-      if (term.type == KernelType::constant) {
+      if (term.type == KernelType::constant && term.within < 0) {
         sum += term.variance;
         continue;
       }
       auto k = K_[t].col(i).tail(n - i).array();
-      if (term.type == KernelType::linear) {
+      if (term.type == KernelType::constant) {
+        k = term.variance;
+      } else if (term.type == KernelType::linear) {
         k = term.variance * (x.bottomRows(n - i) * x.row(i).transpose()).array();
       } else {
         k.setZero();
@@ -228,6 +248,11 @@ void KernelMatrix::evaluate(const Kernel& kernel, Matrix& K) {
         } else {
           radial(term.type, term.variance, k, slope_[t].col(i).tail(n - i).array());
         }
+      }
+      if (term.within >= 0) {
+        const Eigen::ArrayXd agrees = agreement(term, X_.bottomRows(n - i), X_.row(i));
+        k *= agrees;
+        if (slope_[t].size() > 0) slope_[t].col(i).tail(n - i).array() *= agrees;
       }
       sum += k;
     }
@@ -249,7 +274,7 @@ void KernelMatrix::gradient(const Matrix& V, Eigen::Ref<Vector> gradient) const 
     for (Eigen::Index i = 0; i < n; ++i) {
       const Eigen::Index m = n - i - 1;
       const auto v = V.col(i).tail(m).array();
-      if (sum && term.type == KernelType::constant) {
+      if (sum && term.type == KernelType::constant && term.within < 0) {
         by_variance += term.variance * (V(i, i) + 2 * v.sum());
       } else if (sum) {
         by_variance += V(i, i) * K_[t](i, i) + 2 * (v * K_[t].col(i).tail(m).array()).sum();

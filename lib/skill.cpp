@@ -45,7 +45,22 @@ double DurationModel::predict(const Vector& change) const {
 bool sees_starts(const Skill& skill) {
   const auto D = static_cast<int>(skill.columns.size());
   const auto& inputs = skill.models.front().inputs;
-  return std::any_of(inputs.begin(), inputs.end(), [D](int input) { return input >= D; });
+  return std::any_of(inputs.begin(), inputs.end(), [D](int input) { return input >= D && input < 2 * D; });
+}
+
+bool sees_teachers(const Skill& skill) {
+  const auto& inputs = skill.models.front().inputs;
+  return std::find(inputs.begin(), inputs.end(), 2 * static_cast<int>(skill.columns.size())) != inputs.end();
+}
+
+int teacher_number(const std::vector<Labels>& rows, const std::optional<std::string>& teacher) {
+  std::vector<std::optional<std::string>> known;
+  for (const auto& row : rows) {
+    if (std::find(known.begin(), known.end(), row.teacher) != known.end()) continue;
+    if (row.teacher == teacher) return static_cast<int>(known.size());
+    known.push_back(row.teacher);
+  }
+  return -1;
 }
 
 Vector inputs_of(const SkillModel& model, const Reach& reach) {
@@ -53,6 +68,10 @@ Vector inputs_of(const SkillModel& model, const Reach& reach) {
   Vector x(static_cast<Eigen::Index>(model.inputs.size()));
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const int input = model.inputs[static_cast<std::size_t>(i)];
+    if (input == 2 * D) {
+      x[i] = reach.teacher;
+      continue;
+    }
     const bool start = input >= D;
     x[i] = !start ? reach.change[input] : reach.offset.size() > 0 ? reach.offset[input - D] : 0.0;
   }
@@ -64,6 +83,7 @@ double region_excess(const Skill& skill, const Reach& reach) {
   for (const auto& model : skill.models) {
     const Vector x = inputs_of(model, reach);
     for (Eigen::Index j = 0; j < x.size(); ++j) {
+      if (model.inputs[static_cast<std::size_t>(j)] == 2 * reach.change.size()) continue;  // a name has no region
       const auto column = model.process.X.col(j);
       const double low = column.minCoeff();
       const double high = column.maxCoeff();
@@ -97,7 +117,9 @@ WeightPrediction SkillPredictor::weights(const Reach& reach) const {
 
 Reach SkillPredictor::reach(const Goal& goal) const {
   const Vector start = goal.start.value_or(skill_.start);
-  return {goal.position - start, start - skill_.start};
+  Reach reach(goal.position - start, start - skill_.start);
+  if (goal.labels.teacher) reach.teacher = teacher_number(skill_.rows, goal.labels.teacher);
+  return reach;
 }
 
 Dmp SkillPredictor::primitive(const Goal& goal) const {

@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "lfdtools/ways.hpp"
+
 namespace lfd {
 namespace {
 
@@ -15,21 +17,36 @@ std::vector<std::string> signal_names(Eigen::Index D) {
   return names;
 }
 
+/// @param options         with the kernel to learn with
 /// @param rows_are_means  a row is a mean of demonstrations already, so its noise is that of a mean
-Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
+Predictor one_way(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
   const auto names = signal_names(rows.front().primitive.dimensions());
-  options.kernel = choose_kernel(names, rows, options);
   Skill trained = train_skill(names, rows, options);
   trained.calibration = calibrate(trained, rows, options);
   const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));
   return [skill, rows_are_means](const Query& query) {
-    const Dmp dmp = skill->primitive({{}, query.goal, query.start, {}});
+    const Goal goal{{{}, query.teacher, {}, {}}, query.goal, query.start, {}};
+    const Dmp dmp = skill->primitive(goal);
     const double averaged = rows_are_means && std::isfinite(query.repetitions) ? 1.0 : query.repetitions;
-    const auto half_width = [skill, reach = skill->reach({{}, query.goal, query.start, {}}), averaged](BandKind kind,
-                                                                                                       double level) {
+    const auto half_width = [skill, reach = skill->reach(goal), averaged](BandKind kind, double level) {
       return band(*skill, reach, linspace(0, 1, phase_count), kind, level, averaged);
     };
     return Predicted{rollout(dmp, linspace(0, dmp.tau, phase_count)).positions, half_width};
+  };
+}
+
+/// Where the rows go two ways round, a skill of each, of which a query gets that of the nearest target.
+Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
+  const auto names = signal_names(rows.front().primitive.dimensions());
+  options.kernel = choose_kernel(names, rows, options);
+  const auto ways = options.paper ? std::optional<Ways>() : two_ways(train_skill(names, rows, options));
+  if (!ways || !is_trainable(rows_of_way(rows, *ways, 0)) || !is_trainable(rows_of_way(rows, *ways, 1))) {
+    return one_way(rows, options, rows_are_means);
+  }
+  std::vector<Predictor> predictors;
+  for (const int way : {0, 1}) predictors.push_back(one_way(rows_of_way(rows, *ways, way), options, rows_are_means));
+  return [predictors, rows, ways = *ways](const Query& query) {
+    return predictors[static_cast<std::size_t>(nearest_way(rows, ways, query.change()))](query);
   };
 }
 

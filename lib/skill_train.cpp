@@ -37,12 +37,13 @@ void check_rows(const std::vector<std::string>& columns, const std::vector<Skill
   }
 }
 
-std::vector<SkillModel> structure(SkillStructure wanted, bool paper, bool starts, int D) {
+std::vector<SkillModel> structure(SkillStructure wanted, bool paper, bool starts, bool teachers, int D) {
   if (wanted == SkillStructure::automatic) wanted = paper ? SkillStructure::axis : SkillStructure::full;
   std::vector<int> outputs(static_cast<std::size_t>(D));
   std::iota(outputs.begin(), outputs.end(), 0);
   std::vector<int> inputs(static_cast<std::size_t>(starts ? 2 * D : D));
   std::iota(inputs.begin(), inputs.end(), 0);
+  if (teachers) inputs.push_back(2 * D);
   std::vector<SkillModel> models;
   if (wanted == SkillStructure::joint) {
     models.push_back({inputs, outputs, {}});
@@ -51,15 +52,34 @@ std::vector<SkillModel> structure(SkillStructure wanted, bool paper, bool starts
   for (const int j : outputs) {
     std::vector<int> own{j};
     if (starts) own.push_back(D + j);
+    if (teachers) own.push_back(2 * D);
     models.push_back({wanted == SkillStructure::axis ? own : inputs, {j}, {}});
   }
   return models;
+}
+
+/// @throws UsageError [skill.teachers]
+bool tells_teachers_apart(const std::vector<Labels>& rows, const SkillOptions& options) {
+  if (options.hyperparameters != nullptr) return sees_teachers(*options.hyperparameters);
+  const bool sum = options.kernel == SkillKernel::automatic || options.kernel == SkillKernel::sum ||
+                   options.kernel == SkillKernel::additive;
+  const bool known = options.mean == SkillMean::automatic || options.mean == SkillMean::line;
+  const bool possible = !options.paper && sum && known;
+  if (options.teachers == SkillTeachers::apart && !possible) {
+    throw UsageError(
+        "skill.teachers",
+        "teachers can be told apart with kernel sum or additive and mean line, not with the paper's process");
+  }
+  const auto other = [&](const Labels& row) { return row.teacher != rows.front().teacher; };
+  return possible && (options.teachers == SkillTeachers::apart ||
+                      (options.teachers == SkillTeachers::automatic && std::any_of(rows.begin(), rows.end(), other)));
 }
 
 /// Inputs of a model, changes and starts apart: their ranges have nothing to do with each other.
 std::vector<std::vector<int>> input_groups(const SkillModel& model, int D) {
   std::vector<std::vector<int>> groups(1);
   for (int i = 0; i < static_cast<int>(model.inputs.size()); ++i) {
+    if (model.inputs[static_cast<std::size_t>(i)] == 2 * D) continue;
     const bool start = model.inputs[static_cast<std::size_t>(i)] >= D;
     if (start && groups.size() == 1) groups.emplace_back();
     groups[start ? 1 : 0].push_back(i);
@@ -80,6 +100,9 @@ MvgpOptions process_options(const SkillOptions& options, const SkillModel& model
     process.kernel = se_ard_kernel(p);
     if (wanted == SkillKernel::matern32) process.kernel.terms.front().type = KernelType::matern32;
     if (wanted == SkillKernel::matern52) process.kernel.terms.front().type = KernelType::matern52;
+  }
+  if (model.inputs.back() == 2 * D) {
+    process.kernel = with_own_part(std::move(process.kernel), input_groups(model, D), p - 1);
   }
   process.omega = options.omega;
   process.process = options.process;
@@ -187,7 +210,8 @@ Skill untrained(const std::vector<std::string>& columns, const std::vector<Skill
                       : options.inputs == SkillInputs::automatic
                           ? !options.paper && skill.start_spread > start_tolerance
                           : options.inputs == SkillInputs::change_and_start;
-  skill.models = structure(options.structure, options.paper, starts, static_cast<int>(D));
+  skill.models = structure(options.structure, options.paper, starts, tells_teachers_apart(skill.rows, options),
+                           static_cast<int>(D));
   return skill;
 }
 
@@ -207,7 +231,9 @@ void train_processes(Skill& skill, const std::vector<SkillRow>& rows, const Skil
     Matrix X(n, static_cast<Eigen::Index>(model.inputs.size()));
     for (Eigen::Index i = 0; i < n; ++i) {
       const SkillRow& row = rows[static_cast<std::size_t>(i)];
-      X.row(i) = inputs_of(model, {row.change(), row.primitive.start - skill.start}).transpose();
+      Reach reach(row.change(), row.primitive.start - skill.start);
+      reach.teacher = teacher_number(skill.rows, row.labels.teacher);
+      X.row(i) = inputs_of(model, reach).transpose();
     }
     MvgpOptions process = process_options(options, model, static_cast<int>(D));
     if (!options.paper) process.evidence_power = evidence_power(skill);

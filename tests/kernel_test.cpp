@@ -17,6 +17,7 @@ Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
 
 /// The documented formula, written once more without vectors.
 double by_definition(const KernelTerm& term, const Vector& a, const Vector& b) {
+  if (term.within >= 0 && a(term.within) != b(term.within)) return 0;
   double r2 = 0;
   double dot = 0;
   for (std::size_t q = 0; q < term.inputs.size(); ++q) {
@@ -52,12 +53,30 @@ Kernel every_type() {
            {KernelType::constant, 2.0, {}, {}}}};
 }
 
+/// Every type over columns 0 to 2, and again between rows that agree in column 3.
+Kernel every_type_within() {
+  Kernel kernel = every_type();
+  for (KernelTerm term : every_type().terms) {
+    term.within = 3;
+    term.variance *= 0.7;
+    kernel.terms.push_back(term);
+  }
+  return kernel;
+}
+
+/// Rows with a fourth column that tells three groups apart.
+Matrix grouped(Matrix X) {
+  X.conservativeResize(X.rows(), 4);
+  for (Eigen::Index i = 0; i < X.rows(); ++i) X(i, 3) = static_cast<double>(i % 3);
+  return X;
+}
+
 }  // namespace
 
 TEST_CASE("a kernel is the sum of its terms' formulas") {
-  const Kernel kernel = every_type();
-  const Matrix A = random_matrix(7, 3, 1);
-  const Matrix B = random_matrix(4, 3, 2);
+  const Kernel kernel = every_type_within();
+  const Matrix A = grouped(random_matrix(7, 3, 1));
+  const Matrix B = grouped(random_matrix(4, 3, 2));
   const Matrix K = covariance(kernel, A, B);
   const Matrix KA = covariance(kernel, A);
   REQUIRE(K.rows() == 7);
@@ -91,7 +110,10 @@ TEST_CASE("gradients in the logarithms of the hyperparameters are those of diffe
   SECTION("a single Matern term") {
     kernel = {{every_type().terms[2]}};
   }
-  Matrix X = random_matrix(9, 3, 3);
+  SECTION("terms that hold within groups") {
+    kernel = every_type_within();
+  }
+  Matrix X = grouped(random_matrix(9, 3, 3));
   X.row(4) = X.row(1);  // two rows coincide: Matern kernels have no second derivative there
   Matrix V = random_matrix(9, 9, 4);
   V = (V + V.transpose()).eval();
@@ -148,6 +170,9 @@ TEST_CASE("a kernel that cannot be used is refused by name") {
   bad.inputs = {0, 2};
   CHECK(id_of({{bad}}) == "kernel.bad_inputs");
   bad.inputs = {1, 1};
+  CHECK(id_of({{bad}}) == "kernel.bad_inputs");
+  bad = good;
+  bad.within = 2;
   CHECK(id_of({{bad}}) == "kernel.bad_inputs");
   bad = good;
   bad.length_scales(1) = 0;

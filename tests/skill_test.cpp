@@ -136,6 +136,44 @@ TEST_CASE("the demonstrated region is the widened range of each signal") {
   CHECK(region_excess(skill, vec(0.3, -0.2, 0.3)) == Approx(0.07));
 }
 
+TEST_CASE("teachers are told apart: each keeps to their own way, and nobody's way is less sure") {
+  std::vector<SkillRow> rows;
+  for (const std::string teacher : {"anna", "bert"}) {
+    for (SkillRow row : rows_on_grid()) {
+      // Bert goes 40 mm higher halfway; two of his targets alone are known.
+      if (teacher == "bert" && row.labels.target != "1" && row.labels.target != "9") continue;
+      Trajectory path = motion_to(row.primitive.goal, 2);
+      const auto s = path.times.array() / 2;
+      if (teacher == "bert") path.positions.col(2).array() += 0.04 * 64 * (s * (1 - s)).cube();
+      row.labels.teacher = teacher;
+      rows.push_back({row.labels, fit_dmp(path)});
+    }
+  }
+  const SkillPredictor predictor(train_skill(xyz, rows));
+  REQUIRE(sees_teachers(predictor.skill()));
+  CHECK(teacher_number(predictor.skill().rows, "bert") == 1);
+  CHECK(teacher_number(predictor.skill().rows, "carla") == -1);
+  const Vector goal = vec(0.3, 0.05, 0.275);
+  const auto halfway = [&](std::optional<std::string> teacher) {
+    const Dmp dmp = predictor.primitive({{{}, teacher, {}, {}}, goal, Vector::Zero(3), 1.0});
+    return rollout(dmp, Vector::Constant(1, 0.5)).positions(0, 2);
+  };
+  CHECK(halfway("bert") - halfway("anna") == Approx(0.04).margin(0.002));
+  const auto variance = [&](std::optional<std::string> teacher) {
+    const Reach reach = predictor.reach({{{}, teacher, {}, {}}, goal, Vector::Zero(3), {}});
+    return predictor.processes()[2].predict(inputs_of(predictor.skill().models[2], reach)).variance;
+  };
+  CHECK(variance("bert") < variance({}));
+  CHECK(variance("carla") == variance({}));
+  SkillOptions together;
+  together.teachers = SkillTeachers::together;
+  CHECK_FALSE(sees_teachers(train_skill(xyz, rows, together)));
+  together = {};
+  together.teachers = SkillTeachers::apart;
+  together.paper = true;
+  CHECK_THROWS_AS(train_skill(xyz, rows, together), UsageError);
+}
+
 TEST_CASE("rows that make no skill are refused") {
   auto rows = rows_on_grid();
   CHECK_THROWS_AS(train_skill(xyz, {rows.front()}), DataError);

@@ -1,19 +1,34 @@
 // Learns a skill: weights as a function of goal - start (paper eq. (15)-(27)).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "lfdtools/calibration.hpp"
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/io/dmp_file.hpp"
 #include "lfdtools/io/skill_file.hpp"
+#include "lfdtools/ways.hpp"
 
 using namespace lfd;
+
+namespace {
+
+std::string describe(const Ways& ways) {
+  const auto second = std::count(ways.of_row.begin(), ways.of_row.end(), 1);
+  return fmt::format(
+      "the demonstrations go two ways round, {} one way and {} the other, {:.0f} mm and {:.1f} standard "
+      "deviations apart",
+      ways.of_row.size() - static_cast<std::size_t>(second), second, 1000 * ways.distance, ways.separation);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   SkillOptions options;
   bool calibrated = true;
   std::int64_t starts = options.starts;
+  std::optional<std::int64_t> way;
   cli::Program program("mvgpr-train", "Learn a skill: movement primitives whose weights follow the target.");
   program.reads("DMP JSON of several targets").uses_jobs().uses_seed();
   program.flag("--paper", options.paper,
@@ -47,6 +62,11 @@ int main(int argc, char** argv) {
                   {"linear", SkillMean::linear},
                   {"line", SkillMean::line}},
                  "mean function; line (auto, but zero with --paper): the straight minimum-jerk motion");
+  program.choice(
+      "--teachers", options.teachers,
+      {{"auto", SkillTeachers::automatic}, {"together", SkillTeachers::together}, {"apart", SkillTeachers::apart}},
+      "what all teachers share and each one's own part on top (auto: where two or more are named), or as if "
+      "one had demonstrated all");
   program.choice("--omega", options.omega, {{"integrated", OmegaRule::integrated}, {"ml", OmegaRule::ml}},
                  "covariance between weights: integrated out, or free (needs more rows than weights)");
   program.choice("--process", options.process,
@@ -59,6 +79,8 @@ int main(int argc, char** argv) {
   });
   program.choice("--calibration", calibrated, {{"targets", true}, {"none", false}},
                  "scale the bands by what is missed on targets left out in turn, or trust the process");
+  program.integer("--way", way, {1, 2}, "learn one of two ways round alone: 1 is that of the first primitive");
+  program.gate("two_ways", "demonstrations of a target that go two ways round: their mean goes neither");
   program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");
   program.example("dmp-fit demos.csv | mvgpr-train -o skill.json", "every recording a row, in its own clock");
   program.example("dmp-fit reference.csv | mvgpr-train -o skill.json", "one row a target");
@@ -88,6 +110,15 @@ int main(int argc, char** argv) {
     }
     options.kernel = choose_kernel(file.header.columns, rows, options);
     file.skill = train_skill(file.header.columns, rows, options);
+    if (const auto ways = options.paper ? std::optional<Ways>() : two_ways(file.skill)) {
+      if (!way) run.refuse("two_ways", describe(*ways) + "; --way 1 or 2 learns one of them");
+      if (way) {
+        rows = rows_of_way(rows, *ways, static_cast<int>(*way) - 1);
+        file.skill = train_skill(file.header.columns, rows, options);
+      }
+    } else if (way) {
+      throw DataError("skill.one_way", "the demonstrations go one way alone");
+    }
     if (calibrated) file.skill.calibration = calibrate(file.skill, rows, options);
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     double evidence = 0;

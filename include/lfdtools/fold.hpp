@@ -66,6 +66,7 @@ struct TrainingTarget {
 struct Query {
   Vector start, goal;      ///< means of the measured ends, D [m]
   double repetitions = 1;  ///< demonstrations behind the mean path that the band is about; infinite: the intention
+  std::optional<std::string> teacher = {};  ///< whose motion is wanted
 
   [[nodiscard]] Vector change() const { return goal - start; }
 };

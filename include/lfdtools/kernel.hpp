@@ -29,6 +29,9 @@ struct KernelTerm {
   double variance = 1;      ///< relative to Omega, no unit, positive
   std::vector<int> inputs;  ///< columns of X that it sees, from 0, each once; empty for a constant
   Vector length_scales;     ///< one per input [m], positive; empty for a constant
+  /// Column of X in which two rows must agree, else the term is 0 between them: what rows of one teacher share. -1:
+  /// none.
+  int within = -1;
 };
 
 /// A term or a sum of terms.
@@ -49,6 +52,11 @@ struct Kernel {
 [[nodiscard]] Kernel sum_kernel(const std::vector<std::vector<int>>& groups);
 /// All inputs in one group.
 [[nodiscard]] Kernel sum_kernel(int p);
+
+/// The kernel + a constant and one linear term a group that hold within equal values of a column alone: a smooth
+/// function that all share, and each one's own departure from it.
+/// @param within  column of X
+[[nodiscard]] Kernel with_own_part(Kernel kernel, const std::vector<std::vector<int>>& groups, int within);
 
 /// Refuses a kernel that cannot be used with p inputs.
 /// @throws DataError [kernel.no_terms], [kernel.bad_inputs], [kernel.bad_length_scales], [kernel.bad_variance]

@@ -23,8 +23,9 @@ struct SkillRow {
 
 /// Where a motion leads, as the processes see it.
 struct Reach {
-  Vector change;  ///< dP = goal - start, D [m]
-  Vector offset;  ///< start - Skill::start, D [m]; empty: zero
+  Vector change;     ///< dP = goal - start, D [m]
+  Vector offset;     ///< start - Skill::start, D [m]; empty: zero
+  int teacher = -1;  ///< teacher_number of whose motion it is; -1: nobody's who is known
 
   // NOLINTNEXTLINE(google-explicit-constructor): a change alone says where, from the usual start.
   Reach(Vector dP, Vector start_offset = {}) : change(std::move(dP)), offset(std::move(start_offset)) {}
@@ -75,6 +76,14 @@ enum class SkillTempo {
   shared      ///< drawn towards the tempo of all targets (tempo.hpp: with_shared_tempo)
 };
 
+/// Whether motions are learnt as somebody's.
+enum class SkillTeachers {
+  automatic,  ///< `apart` where the rows name two teachers or more, with kernels `sum` and `additive` without an
+              ///< estimated mean; else `together`
+  together,   ///< as if one had demonstrated all
+  apart       ///< what all share, and on top of it a constant and a linear term that are a teacher's own
+};
+
 struct Skill;
 
 struct SkillOptions {
@@ -86,6 +95,7 @@ struct SkillOptions {
   SkillKernel kernel = SkillKernel::automatic;
   SkillMean mean = SkillMean::automatic;
   SkillTempo tempo = SkillTempo::automatic;
+  SkillTeachers teachers = SkillTeachers::automatic;
   OmegaRule omega = OmegaRule::integrated;
   ProcessType process = ProcessType::gaussian;
   int starts = 5;
@@ -97,7 +107,8 @@ struct SkillOptions {
 
 /// One process of a skill. Columns of its Y: by signal in `outputs`, then by basis.
 struct SkillModel {
-  std::vector<int> inputs;   ///< from 0: signals j whose change it sees; D + j: signals whose start it sees
+  std::vector<int>
+      inputs;  ///< from 0: signals j whose change it sees; D + j: whose start it sees; 2 D: the teacher's number
   std::vector<int> outputs;  ///< signals whose weights it gives, from 0
   MvgpModel process;
 };
@@ -138,7 +149,8 @@ struct Skill {
 /// a target share what sets it apart and are not the independent witnesses that the process takes them for.
 /// @param columns  D signal names, as the rows' axes
 /// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every dP is the same;
-///         [skill.tempo] if a shared tempo is asked for where there is none; those of train_mvgp
+///         [skill.tempo] if a shared tempo is asked for where there is none; UsageError [skill.teachers]; those of
+///         train_mvgp
 [[nodiscard]] Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
                                 const SkillOptions& options = {});
 
@@ -162,7 +174,13 @@ struct Skill {
 /// Whether the processes see the start as well.
 [[nodiscard]] bool sees_starts(const Skill& skill);
 
-/// Components of a reach that a model sees, p [m].
+/// Whether the processes tell teachers apart.
+[[nodiscard]] bool sees_teachers(const Skill& skill);
+
+/// Number of a teacher, from 0 in the order in which rows first name them (no name is one too); -1: named by no row.
+[[nodiscard]] int teacher_number(const std::vector<Labels>& rows, const std::optional<std::string>& teacher);
+
+/// What a model sees of a reach, p [m]; the teacher's number has no unit.
 [[nodiscard]] Vector inputs_of(const SkillModel& model, const Reach& reach);
 
 /// A, N x N lower triangular, so that the Euclidean distance of rows w A is the root mean square distance [m] over one

@@ -64,14 +64,15 @@ void check_covariance(const JsonView& view, const Matrix& A) {
   }
 }
 
-/// What inputs of models may be called: each signal (its goal - start), then start_ and each signal.
+/// What inputs of models may be called: each signal (its goal - start), then start_ and each signal, then teacher.
 std::vector<std::string> input_names(std::vector<std::string> columns) {
   for (std::size_t j = 0, D = columns.size(); j < D; ++j) columns.push_back("start_" + columns[j]);
+  columns.push_back("teacher");
   return columns;
 }
 
 KernelTerm read_term(const JsonView& view, const std::vector<std::string>& inputs, bool term_of_sum) {
-  view.only({"type", "variance", "inputs", "length_scales"});
+  view.only({"type", "variance", "inputs", "length_scales", "within"});
   KernelTerm term;
   checked(view.at("type"), [&] { term.type = kernel_type_from_name(view.at("type").string()); });
   term.variance = view.at("variance").positive();
@@ -81,6 +82,12 @@ KernelTerm read_term(const JsonView& view, const std::vector<std::string>& input
     for (int j = 0; j < static_cast<int>(inputs.size()); ++j) term.inputs.push_back(j);
   }
   term.length_scales = view.at("length_scales").vector(static_cast<Eigen::Index>(term.inputs.size()));
+  if (const auto within = view.find("within")) {
+    const auto found = std::find(inputs.begin(), inputs.end(), within->string());
+    if (found == inputs.end())
+      within->fail("skill.unknown_signal", fmt::format("there is no input '{}' here", within->string()));
+    term.within = static_cast<int>(found - inputs.begin());
+  }
   return term;
 }
 
@@ -141,6 +148,7 @@ SkillModel read_model(const JsonView& view, const std::vector<std::string>& colu
 void write_term(JsonWriter& json, const KernelTerm& term, const std::vector<std::string>& inputs, bool term_of_sum) {
   json.begin_object().member("type", kernel_type_name(term.type)).member("variance", term.variance);
   if (term_of_sum) json.member("inputs", names(term.inputs, inputs));
+  if (term.within >= 0) json.member("within", inputs[static_cast<std::size_t>(term.within)]);
   json.key("length_scales").vector(term.length_scales).end_object();
 }
 

@@ -23,7 +23,11 @@ def kernel(m, a, b):
     total = 0
     for k in terms:
         names = k.get("inputs", m["inputs"])
-        total = total + term({**k, "columns": [m["inputs"].index(name) for name in names]}, a, b)
+        part = term({**k, "columns": [m["inputs"].index(name) for name in names]}, a, b)
+        if "within" in k:
+            j = m["inputs"].index(k["within"])
+            part = part * np.equal.outer(a[:, j], b[:, j])
+        total = total + part
     return total
 
 

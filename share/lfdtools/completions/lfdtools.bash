@@ -11,8 +11,8 @@ _lfdtools_options() {
                   "--bic-likelihood --restarts" ;;
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
-    mvgpr-train) echo "$common -j --jobs --seed --paper --model --inputs --kernel --mean --omega" \
-                      "--process --calibration --starts" ;;
+    mvgpr-train) echo "$common $gates -j --jobs --seed --paper --model --inputs --kernel --mean --teachers --omega" \
+                      "--process --calibration --way --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
@@ -45,6 +45,7 @@ _lfdtools_words() {
     mvgpr-train:--mean) echo "auto zero constant linear line" ;;
     mvgpr-train:--inputs) echo "auto change change+start" ;;
     mvgpr-train:--calibration) echo "targets none" ;;
+    mvgpr-train:--teachers) echo "auto together apart" ;;
     mvgpr-train:--omega) echo "integrated ml" ;;
     mvgpr-train:--process) echo "gaussian student-t" ;;
     skill-validate:--methods) echo "skill skill-axis skill-full skill-joint skill-student-t paper paper-full line" \
@@ -56,6 +57,8 @@ _lfdtools_words() {
     *:--robot) echo "ur10 ur10e" ;;
     *:--frame) echo "base base_link" ;;
     dmp-fit:--no-gate) echo "goal_change" ;;
+    mvgpr-train:--no-gate) echo "two_ways" ;;
+    mvgpr-train:--way) echo "1 2" ;;
     skill-generate:--no-gate) echo "region start sd" ;;
     skill-generate:--sd) echo "latent predictive" ;;
     skill-generate:--band) echo "pointwise path" ;;
