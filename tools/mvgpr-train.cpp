@@ -47,6 +47,11 @@ int main(int argc, char** argv) {
                   {"linear", SkillMean::linear},
                   {"line", SkillMean::line}},
                  "mean function; line (auto, but zero with --paper): the straight minimum-jerk motion");
+  program.choice(
+      "--tempo", options.tempo,
+      {{"auto", SkillTempo::automatic}, {"own", SkillTempo::own}, {"shared", SkillTempo::shared}},
+      "draw how early or late each target's rows are towards all targets' (shared: auto, but own with --paper "
+      "and scaling goal), or take them as they are");
   program.choice("--omega", options.omega, {{"integrated", OmegaRule::integrated}, {"ml", OmegaRule::ml}},
                  "covariance between weights: integrated out, or free (needs more rows than weights)");
   program.choice("--process", options.process,
