@@ -12,6 +12,7 @@ namespace {
 constexpr int tries = 10;
 constexpr int max_iterations = 100;
 constexpr double least_separation = 5;
+constexpr double least_distance = 0.02;  // [m]
 
 KMeans best_split(const Matrix& residuals) {
   Random random(1);
@@ -53,7 +54,7 @@ std::optional<Ways> two_ways(const Skill& skill) {
     return std::any_of(group.begin(), group.end(),
                        [&](std::size_t i) { return ways.of_row[i] != ways.of_row[group[0]]; });
   });
-  if (!mixed || !(ways.separation >= least_separation)) return {};
+  if (!mixed || ways.distance < least_distance || !(ways.separation >= least_separation)) return {};
   return ways;
 }
 

@@ -1,6 +1,7 @@
 #include "lfdtools/mvgp.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -157,6 +158,41 @@ TEST_CASE("the mean of a given K' depends neither on Omega nor on the transform"
   CHECK((none.mean - same.mean).cwiseAbs().maxCoeff() < 1e-14);
   CHECK((none.mean - other.mean).cwiseAbs().maxCoeff() < 1e-12);
   CHECK(none.variance == other.variance);
+}
+
+TEST_CASE("what is left of a group that is left out is what a model without it misses") {
+  const Matrix X = random_matrix(12, 2, 71);
+  const Matrix W = random_matrix(12, 3, 72);
+  const Matrix A = random_matrix(3, 3, 73) + 3 * Matrix::Identity(3, 3);
+  const std::vector<std::vector<std::size_t>> groups = {{0, 5, 6}, {1}, {2, 3, 4, 7, 8}, {10, 9}};  // 11 is in none
+  MvgpOptions options;
+  options.kernel = sum_of_two();
+  options.optimise = false;
+  options.noise_variance = 0.07;
+  SECTION("zero mean") {}
+  SECTION("a mean that is known") {
+    options.mean = MeanType::linear;
+    options.coefficients = random_matrix(3, 3, 74);
+  }
+  SECTION("rows with a noise of their own") {
+    options.row_noise = random_matrix(12, 1, 75).array().square() + 0.1;
+  }
+  const Matrix left_out = left_out_residuals(train_mvgp(X, W, A, options), groups);
+  CHECK(left_out.row(11).norm() == 0);
+  for (const auto& group : groups) {
+    std::vector<std::size_t> rest;
+    for (std::size_t i = 0; i < 12; ++i) {
+      if (std::find(group.begin(), group.end(), i) == group.end()) rest.push_back(i);
+    }
+    MvgpOptions of_rest = options;
+    if (options.row_noise.size() > 0) of_rest.row_noise = options.row_noise(rest);
+    const MvgpPredictor without(train_mvgp(X(rest, Eigen::all), W(rest, Eigen::all), A, of_rest));
+    for (const std::size_t i : group) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Vector missed = A.transpose() * (W.row(row).transpose() - without.predict(X.row(row).transpose()).mean);
+      CHECK((left_out.row(row).transpose() - missed).cwiseAbs().maxCoeff() < 1e-9);
+    }
+  }
 }
 
 TEST_CASE("with a free Omega the row is Gaussian") {

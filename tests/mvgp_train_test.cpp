@@ -208,6 +208,92 @@ TEST_CASE("the fields of a trained model are what the documentation says") {
   CHECK((H.transpose() * noisy_covariance(linear).inverse() * R).cwiseAbs().maxCoeff() < 1e-6);
 }
 
+TEST_CASE("evidence to a power p is evidence beside priors that are wider by 1 / p in variance") {
+  // p (E + z^2 / (2 s^2 p)) = p E + z^2 / (2 s^2)
+  const Rows rows = smooth_rows(14, 2, 6, 0.3, 31);
+  constexpr double p = 0.3;
+  MvgpOptions options = default_mvgp_options(2);
+  const MvgpModel full = train_mvgp(rows.X, rows.Y, {}, options);
+  options.evidence_power = p;
+  const MvgpModel weak = train_mvgp(rows.X, rows.Y, {}, options);
+  options.evidence_power = 1;
+  for (LogNormalPrior* prior : {&options.length_scale, &options.variance, &options.noise})
+    prior->log_sd *= std::sqrt(p);
+  const MvgpModel narrow = train_mvgp(rows.X, rows.Y, {}, options);
+  const auto theta = [](const MvgpModel& model) {
+    Vector all(log_hyperparameters(model.kernel).size() + 1);
+    all << log_hyperparameters(model.kernel), std::log(model.noise_variance);
+    return all;
+  };
+  CHECK((theta(weak) - theta(narrow)).cwiseAbs().maxCoeff() < 0.02);
+  CHECK((theta(weak) - theta(full)).cwiseAbs().maxCoeff() > 0.2);
+
+  // Without priors the power changes nothing.
+  MvgpOptions paper = paper_mvgp_options(2);
+  const MvgpModel one = train_mvgp(rows.X, rows.Y, {}, paper);
+  paper.evidence_power = 0.5;
+  CHECK((theta(train_mvgp(rows.X, rows.Y, {}, paper)) - theta(one)).cwiseAbs().maxCoeff() < 0.02);
+  paper.evidence_power = 0;
+  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y, {}, paper); }) == "mvgp.bad_prior");
+  paper.evidence_power = 1.5;
+  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y, {}, paper); }) == "mvgp.bad_prior");
+}
+
+TEST_CASE("no point of a fine grid beats evidence to a power times priors") {
+  const Rows rows = smooth_rows(12, 1, 3, 0.2, 41);
+  const double range = rows.X.maxCoeff() - rows.X.minCoeff();
+  MvgpOptions options = paper_mvgp_options(1);
+  options.evidence_power = 0.25;
+  options.length_scale = {2.0, 1.0};
+  options.noise = {0.1, 2.0};
+  const MvgpModel model = train_mvgp(rows.X, rows.Y, {}, options);
+  Evidence evidence(rows.X, rows.Y, model.kernel, {model.omega_rule, model.mean, model.psi, model.nu, {}});
+  const auto objective = [&](double log_l, double log_noise) {
+    Vector theta(2);
+    theta << log_l, log_noise;
+    return 0.25 * evidence(theta) + std::pow(log_l - std::log(2 * range), 2) / 2 +
+           std::pow((log_noise - std::log(0.1)) / 2, 2) / 2;
+  };
+  double best = 1e300;
+  for (double log_l = std::log(0.01 * range); log_l < std::log(100 * range); log_l += 0.05) {
+    for (double log_noise = std::log(1e-6); log_noise < std::log(10.0); log_noise += 0.05) {
+      best = std::min(best, objective(log_l, log_noise));
+    }
+  }
+  const double found = objective(std::log(model.kernel.terms[0].length_scales(0)), std::log(model.noise_variance));
+  CHECK(found < best + 1e-6);
+  CHECK(found > best - 0.01);  // the grid is that fine
+}
+
+TEST_CASE("outputs in which nothing happens do not speak for the hyperparameters of the others") {
+  const Rows rows = smooth_rows(10, 2, 4, 0.1, 51);
+  const MvgpOptions options = default_mvgp_options(2);
+  const MvgpModel alone = train_mvgp(rows.X, rows.Y, {}, options);
+  const auto beside = [&](double size) {
+    return train_mvgp(rows.X, std::vector<Matrix>{rows.Y, size * random_matrix(10, 4, 52)}, {}, options);
+  };
+  // Shares of the mean square: 0, under 1e-7, over 1e-7.
+  for (const double size : {0.0, 1e-5}) {
+    const auto models = beside(size);
+    CHECK(log_hyperparameters(models[0].kernel) == log_hyperparameters(alone.kernel));
+    CHECK(models[1].noise_variance == alone.noise_variance);
+    CHECK(models[0].log_marginal_likelihood == alone.log_marginal_likelihood);
+  }
+  CHECK(beside(1e-2)[0].noise_variance > 1.1 * alone.noise_variance);
+
+  // Two outputs turned into five dimensions: the evidence of the two, Omega's prior marginalised with them.
+  MvgpOptions known = options;
+  known.psi = Matrix::Constant(1, 1, 0.4);
+  const MvgpModel two = train_mvgp(rows.X, rows.Y.leftCols(2), {}, known);
+  const Matrix turn = Eigen::HouseholderQR<Matrix>(random_matrix(5, 5, 53)).householderQ();
+  const MvgpModel five = train_mvgp(rows.X, rows.Y.leftCols(2) * turn.topRows(2), {}, known);
+  CHECK((log_hyperparameters(five.kernel) - log_hyperparameters(two.kernel)).cwiseAbs().maxCoeff() < 1e-3);
+  CHECK(five.noise_variance == Approx(two.noise_variance).epsilon(1e-3));
+  known.smallest_share = 0;  // the three empty directions of five are then proof of no noise
+  CHECK(train_mvgp(rows.X, rows.Y.leftCols(2) * turn.topRows(2), {}, known).noise_variance !=
+        Approx(two.noise_variance));
+}
+
 TEST_CASE("the result is the same for any number of threads, and for the same seed") {
   const Rows rows = smooth_rows(12, 3, 8, 0.05, 13);
   MvgpOptions options = default_mvgp_options(3);

@@ -29,4 +29,12 @@ set_tests_properties("study: generalise layouts" PROPERTIES
 set_tests_properties("study: generalise coverage" PROPERTIES
                      PASS_REGULAR_EXPRESSION "\\(predictive\\) +1 +[0-9.]+ %.*results: ")
 
+# The check of hyperparameters on one fold of experiment A, with a few starts.
+add_test(NAME "study: hyperparameters"
+         COMMAND ${CMAKE_COMMAND} -E env LFD_BUILD_DIR=${CMAKE_BINARY_DIR} LFD_STARTS=20 LFD_FOLDS=1
+                 LFD_OUT_DIR=${CMAKE_CURRENT_BINARY_DIR}/study PATH=${LFD_PROGRAM_FOLDER}:$ENV{PATH}
+                 sh -c "demo-synth -q --repetitions 3 '${CMAKE_SOURCE_DIR}/share/lfdtools/peg-in-hole/A.json' -o study-A.csv &&
+                        sh '${CMAKE_SOURCE_DIR}/share/lfdtools/study/hyperparameters.sh' study-A.csv"
+         WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+
 add_test(NAME "layers" COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh ${CMAKE_SOURCE_DIR})

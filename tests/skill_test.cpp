@@ -7,6 +7,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/metrics.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/tempo.hpp"
 #include "lfdtools/validation.hpp"
 
 using namespace lfd;
@@ -34,6 +35,50 @@ std::vector<SkillRow> rows_on_grid(double tempo = 0) {
       Vector goal(3);
       goal << x, y, 0.3 - 0.5 * y;
       rows.push_back({{std::to_string(rows.size() + 1), {}, {}, {}}, fit_dmp(motion_to(goal, 2 + tempo * x))});
+    }
+  }
+  return rows;
+}
+
+/// What each row misses when its target is left out and the rest learnt anew with the skill's hyperparameters,
+/// n x (D N), in the metric.
+Matrix misses_by_retraining(const Skill& skill, const std::vector<SkillRow>& rows, SkillOptions options) {
+  options.hyperparameters = &skill;
+  const Matrix metric = trajectory_metric(skill.dmp);
+  const Eigen::Index N = skill.dmp.bases();
+  Matrix missed(static_cast<Eigen::Index>(rows.size()), N * static_cast<Eigen::Index>(skill.columns.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::vector<SkillRow> rest;
+    for (const auto& row : rows) {
+      if (row.labels.target != rows[i].labels.target) rest.push_back(row);
+    }
+    const SkillPredictor predictor(train_skill(skill.columns, rest, options));
+    const Matrix left = (rows[i].primitive.weights - predictor.weights(rows[i].change()).mean) * metric;
+    for (Eigen::Index j = 0; j < left.rows(); ++j) {
+      missed.row(static_cast<Eigen::Index>(i)).segment(j * N, N) = left.row(j);
+    }
+  }
+  return missed;
+}
+
+/// Two noisy motions to each of a grid of goals, bent by what the first input does for itself.
+std::vector<SkillRow> rows_by_one_input(Random& random) {
+  std::vector<SkillRow> rows;
+  const double alone[] = {0, 0.06, -0.05, 0.03};
+  const Vector phases = linspace(0, 1, 100);
+  const Vector bump = (3.14159265358979 * phases.array()).sin().square();
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      Vector goal(2);
+      goal << 0.3 + 0.1 * i, 0.1 + 0.1 * k;
+      for (int r = 0; r < 2; ++r) {
+        Samples path = straight_line(Vector::Zero(2), goal, phases);
+        path.col(0) += (alone[i] + 0.003 * random.normal()) * bump;
+        path.col(1) += 0.003 * random.normal() * bump;
+        DmpFitOptions fit;
+        fit.bases = 8;
+        rows.push_back({{std::to_string(4 * i + k), {}, std::to_string(r), {}}, fit_dmp({2 * phases, path}, fit)});
+      }
     }
   }
   return rows;
@@ -172,6 +217,48 @@ TEST_CASE("teachers are told apart: each keeps to their own way, and nobody's wa
   together.teachers = SkillTeachers::apart;
   together.paper = true;
   CHECK_THROWS_AS(train_skill(xyz, rows, together), UsageError);
+}
+
+TEST_CASE("what is left of a target that is left out is what a skill without it misses") {
+  auto rows = rows_on_grid();
+  for (std::size_t i = 0; i < rows.size(); ++i) {  // five targets, the last of one row
+    rows[i].labels = {std::to_string(i / 2), {}, std::to_string(i % 2), {}};
+    rows[i].primitive.weights.row(0) *= 1 + 0.03 * static_cast<double>(i % 3);
+  }
+  for (const auto structure : {SkillStructure::axis, SkillStructure::full, SkillStructure::joint}) {
+    SkillOptions options;
+    options.structure = structure;
+    options.tempo = SkillTempo::own;
+    options.starts = 1;
+    const Skill skill = train_skill(xyz, rows, options);
+    const Matrix brute = misses_by_retraining(skill, rows, options);
+    CHECK((left_out_residuals(skill) - brute).cwiseAbs().maxCoeff() < 1e-9);
+  }
+}
+
+TEST_CASE("of sum and additive the kernel is chosen that misses less on targets left out") {
+  int additive = 0;
+  for (const std::uint64_t seed : {1, 3}) {
+    Random random(seed);
+    const auto rows = rows_by_one_input(random);
+    double missed[2] = {};
+    for (const auto kernel : {SkillKernel::additive, SkillKernel::sum}) {
+      SkillOptions options;
+      options.kernel = kernel;
+      options.starts = 1;
+      const Skill skill = train_skill({"x", "y"}, rows, options);
+      options.tempo = SkillTempo::own;
+      const auto shared = with_shared_tempo(train_skill({"x", "y"}, rows, options), rows);
+      const Matrix brute = misses_by_retraining(skill, shared, options);
+      for (const auto& group : target_groups(skill.rows)) {
+        missed[kernel == SkillKernel::sum] += brute(group, Eigen::all).colwise().mean().squaredNorm();
+      }
+    }
+    INFO("additive " << missed[0] << ", sum " << missed[1]);
+    CHECK(choose_kernel({"x", "y"}, rows, {}) == (missed[0] < missed[1] ? SkillKernel::additive : SkillKernel::sum));
+    additive += missed[0] < missed[1] ? 1 : 0;
+  }
+  CHECK(additive == 1);  // both choices are tried
 }
 
 TEST_CASE("rows that make no skill are refused") {

@@ -63,6 +63,11 @@ int main(int argc, char** argv) {
                   {"line", SkillMean::line}},
                  "mean function; line (auto, but zero with --paper): the straight minimum-jerk motion");
   program.choice(
+      "--tempo", options.tempo,
+      {{"auto", SkillTempo::automatic}, {"own", SkillTempo::own}, {"shared", SkillTempo::shared}},
+      "draw how early or late each target's rows are towards all targets' (shared: auto, but own with --paper "
+      "and scaling goal), or take them as they are");
+  program.choice(
       "--teachers", options.teachers,
       {{"auto", SkillTeachers::automatic}, {"together", SkillTeachers::together}, {"apart", SkillTeachers::apart}},
       "what all teachers share and each one's own part on top (auto: where two or more are named), or as if "

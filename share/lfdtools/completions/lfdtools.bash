@@ -11,8 +11,8 @@ _lfdtools_options() {
                   "--bic-likelihood --restarts" ;;
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
-    mvgpr-train) echo "$common $gates -j --jobs --seed --paper --model --inputs --kernel --mean --teachers --omega" \
-                      "--process --calibration --way --starts" ;;
+    mvgpr-train) echo "$common $gates -j --jobs --seed --paper --model --inputs --kernel --mean --tempo --teachers" \
+                      "--omega --process --calibration --way --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
@@ -43,6 +43,7 @@ _lfdtools_words() {
     mvgpr-train:--model) echo "auto axis full joint" ;;
     mvgpr-train:--kernel) echo "auto sum additive se-ard matern32 matern52" ;;
     mvgpr-train:--mean) echo "auto zero constant linear line" ;;
+    mvgpr-train:--tempo) echo "auto own shared" ;;
     mvgpr-train:--inputs) echo "auto change change+start" ;;
     mvgpr-train:--calibration) echo "targets none" ;;
     mvgpr-train:--teachers) echo "auto together apart" ;;

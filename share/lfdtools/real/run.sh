@@ -5,7 +5,7 @@
 #   sh share/lfdtools/real/run.sh demos.csv more.csv     your own, columns target,demo,t,x,y,z
 #
 # Results under build/real/NAME: leave-one-target-out.csv and .svg (bars), table.txt, reliability.csv
-# and .svg (how often bands hold), aligned.csv,
+# and .svg (how often bands hold) with --trim, untrimmed-*.csv and untrimmed-table.txt without it, aligned.csv,
 # skill-demonstrations.json, skill-references.json, motions-*.csv (to each target's own mean goal, from its own mean start), goals.csv.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,6 +26,8 @@ for demos in "$@"; do
   mkdir -p "$out"
   "$bin/skill-validate" -q --trim "$demos" -o "$out/leave-one-target-out.csv" --table="$out/table.txt" \
     --reliability "$out/reliability.csv"
+  "$bin/skill-validate" -q "$demos" -o "$out/untrimmed-leave-one-target-out.csv" --table="$out/untrimmed-table.txt" \
+    --reliability "$out/untrimmed-reliability.csv"
   "$bin/skill-plot" -q "$out/leave-one-target-out.csv" -o "$out/leave-one-target-out.svg"
   "$bin/skill-plot" -q "$out/reliability.csv" -o "$out/reliability.svg"
   "$bin/demo-align" -q --trim --columns x,y,z "$demos" -o "$out/aligned.csv"
@@ -40,8 +42,12 @@ for demos in "$@"; do
   for road in demonstrations references; do
     "$bin/skill-generate" "$out/skill-$road.json" --goals "$out/goals.csv" -o "$out/motions-$road.csv"
   done
-  echo "$name"
-  cat "$out/table.txt"
-  echo
+  for trim in "" untrimmed-; do
+    [ "$trim" = "" ] && echo "$name, --trim" || echo "$name, untrimmed"
+    cat "$out/${trim}table.txt"
+    echo "95 % bands hold samples, whole paths:"
+    awk -F, '$2 == 0.95 { printf "%-20s %5.1f %% %5.1f %%\n", $1, 100 * $3, 100 * $4 }' "$out/${trim}reliability.csv"
+    echo
+  done
 done
 echo "results: ${LFD_OUT_DIR:-$root/build/real}"
