@@ -11,19 +11,9 @@ namespace {
 
 constexpr Eigen::Index phase_count = 200;
 
-std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group) {
-  std::vector<SkillRow> rest;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (std::find(group.begin(), group.end(), i) == group.end()) rest.push_back(rows[i]);
-  }
-  return rest;
-}
-
 /// Targets without which there is still something to learn from.
 std::vector<std::vector<std::size_t>> groups_to_leave_out(const std::vector<SkillRow>& rows) {
-  std::vector<Labels> labels;
-  for (const auto& row : rows) labels.push_back(row.labels);
-  auto groups = target_groups(labels);
+  auto groups = target_groups(labels_of(rows));
   std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
   return groups;
 }

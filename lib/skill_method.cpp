@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "lfdtools/row_check.hpp"
+
 namespace lfd {
 namespace {
 
@@ -16,7 +18,8 @@ std::vector<std::string> signal_names(Eigen::Index D) {
 }
 
 /// @param rows_are_means  a row is a mean of demonstrations already, so its noise is that of a mean
-Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
+Predictor learnt(std::vector<SkillRow> rows, SkillOptions options, bool rows_are_means) {
+  rows = without(rows, repeated_rows(rows));
   const auto names = signal_names(rows.front().primitive.dimensions());
   options.kernel = choose_kernel(names, rows, options);
   Skill trained = train_skill(names, rows, options);
@@ -45,7 +48,7 @@ Trainer skill_method(SkillStructure structure, ProcessType process) {
     learning.structure = structure;
     learning.process = process;
     learning.seed = options.seed;
-    return learnt(rows, learning, options.road == Road::references);
+    return learnt(std::move(rows), learning, options.road == Road::references);
   };
 }
 
@@ -57,7 +60,7 @@ Trainer paper_method(SkillStructure structure) {
     learning.paper = true;
     learning.structure = structure;
     learning.seed = options.seed;
-    return learnt(rows, learning, true);
+    return learnt(std::move(rows), learning, true);
   };
 }
 
