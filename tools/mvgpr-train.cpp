@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     options.jobs = run.jobs();
     JsonStream stream(run.open(), run.messages(), run.json_options());
     TrainingRows training = read_training_rows(stream);
-    SkillFile file{training.header, cli::learn(training.header.columns, std::move(training.rows), request, run)};
+    SkillFile file{training.header, cli::learn(training.header.columns, training.rows, request, run)};
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     double evidence = 0;
     for (const auto& model : file.skill.models) evidence += model.process.log_marginal_likelihood;

@@ -58,7 +58,7 @@ void warn_of_coinciding(const std::vector<SkillRow>& rows, Messages& messages) {
 
 }  // namespace
 
-Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow> rows, TrainingRequest request, Run& run) {
+Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow>& rows, TrainingRequest request, Run& run) {
   rows = without_repeated(rows, run.messages());
   const auto train = [&] {
     SkillOptions options = request.options;

@@ -19,8 +19,9 @@ struct TrainingRequest {
 /// left out [skill.repeated_row]; outliers are named, or left out and the skill learnt again until there is none
 /// [skill.outlier]. Warned of too: targets that coincide [skill.targets_coincide]. A note where there are too few
 /// targets to calibrate [skill.not_calibrated].
+/// @param rows  those learnt from, on return
 /// @throws those of train_skill
-[[nodiscard]] Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow> rows, TrainingRequest request,
+[[nodiscard]] Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow>& rows, TrainingRequest request,
                           Run& run);
 
 }  // namespace lfd::cli
