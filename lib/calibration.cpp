@@ -10,20 +10,11 @@ namespace lfd {
 namespace {
 
 constexpr Eigen::Index phase_count = 200;
-
-std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& group) {
-  std::vector<SkillRow> rest;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (std::find(group.begin(), group.end(), i) == group.end()) rest.push_back(rows[i]);
-  }
-  return rest;
-}
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Targets without which there is still something to learn from.
 std::vector<std::vector<std::size_t>> groups_to_leave_out(const std::vector<SkillRow>& rows) {
-  std::vector<Labels> labels;
-  for (const auto& row : rows) labels.push_back(row.labels);
-  auto groups = target_groups(labels);
+  auto groups = target_groups(labels_of(rows));
   std::erase_if(groups, [&](const auto& group) { return !is_trainable(without(rows, group)); });
   return groups;
 }
@@ -87,7 +78,6 @@ double conformal_quantile(const std::vector<double>& sorted, double share) {
 /// The sd was measured on m targets, so what a new one misses in its units has the tails of a Student-t with m - 1
 /// degrees of freedom.
 double few_targets(std::size_t m, double level) {
-  const double infinite = std::numeric_limits<double>::infinity();
   return student_t_quantile((1 + level) / 2, static_cast<double>(m) - 1) /
          student_t_quantile((1 + level) / 2, infinite);
 }
@@ -105,6 +95,13 @@ Vector effect_of_target(const std::vector<Miss>& misses) {
     latent += miss.variance.latent / m;
   }
   return missed.cwiseMax(latent);
+}
+
+/// What the factors multiply the root of, T x D [m^2].
+Samples of_intention(const PositionVariance& variance, const Calibration& calibration) {
+  Samples total = variance.of_mean(calibration.target_variance, infinite);
+  total.rowwise() += calibration.reproduction.array().square().matrix().transpose();
+  return total;
 }
 
 double factor(const Calibration& calibration, BandKind kind, double level) {
@@ -162,9 +159,11 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
     return student_t_quantile(0.5 + level / 2, nu) * scale *
            variance.of_mean(Vector::Zero(variance.latent.size()), repetitions).cwiseSqrt();
   }
-  Samples total = variance.of_mean(calibration->target_variance, repetitions);
-  total.rowwise() += calibration->reproduction.array().square().matrix().transpose();
-  return factor(*calibration, kind, level) * total.cwiseSqrt();
+  const double scale = factor(*calibration, kind, level);
+  const double pointwise = factor(*calibration, BandKind::pointwise, level);
+  const double noise = (pointwise > 0 ? scale / pointwise : 1) * student_t_quantile(0.5 + level / 2, infinite);
+  const Samples of_noise = variance.unit * (variance.noise / repetitions).asDiagonal();
+  return (scale * scale * of_intention(variance, *calibration) + noise * noise * of_noise).cwiseSqrt();
 }
 
 std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
@@ -196,8 +195,7 @@ std::optional<Calibration> calibrate(const Skill& skill, const std::vector<Skill
 
   std::vector<double> all, greatest;
   for (const auto& miss : misses) {
-    Samples variance = miss.variance.of_mean(calibration.target_variance, miss.repetitions);
-    variance.rowwise() += calibration.reproduction.array().square().matrix().transpose();
+    const Samples variance = of_intention(miss.variance, calibration);
     // Both ends are given to the motion, so they say nothing.
     const Samples ratio =
         (miss.error.cwiseAbs().array() / variance.array().max(1e-24).sqrt()).middleRows(1, phase_count - 2);

@@ -1,6 +1,7 @@
 #include "lfdtools/mvgp.hpp"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 
@@ -74,11 +75,15 @@ Matrix left_out_residuals(const MvgpModel& model, const std::vector<std::vector<
   check_model(model);
   Matrix L;
   require(try_cholesky(noisy_covariance(model), L), "K' is not positive definite");
-  const Matrix inverse = cholesky_solve(L, Matrix::Identity(L.rows(), L.cols()));
-  const Matrix alpha = inverse * residual(model);
-  Matrix left_out = Matrix::Zero(alpha.rows(), alpha.cols());
+  // With B the group's columns of L^-1 the two factors are B^T B and B^T z: least squares, which rows that nearly
+  // repeat each other leave well posed.
+  const auto lower = L.triangularView<Eigen::Lower>();
+  const Matrix inverse = lower.solve(Matrix::Identity(L.rows(), L.cols()));
+  const Matrix z = lower.solve(residual(model));
+  Matrix left_out = Matrix::Zero(z.rows(), z.cols());
   for (const auto& group : groups) {
-    left_out(group, Eigen::all) = cholesky_solve(cholesky(inverse(group, group)), alpha(group, Eigen::all));
+    const Matrix B = inverse(Eigen::all, group);
+    left_out(group, Eigen::all) = B.householderQr().solve(z);
   }
   return left_out;
 }

@@ -1,5 +1,6 @@
 #include "lfdtools/skill.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +8,17 @@
 #include "lfdtools/error.hpp"
 
 namespace lfd {
+namespace {
+
+/// How far x lies outside the interval of some values, widened by a tenth and at least 10 mm; negative inside.
+double beyond(const Eigen::Ref<const Vector>& values, double x) {
+  const double low = values.minCoeff();
+  const double high = values.maxCoeff();
+  const double margin = std::max(0.01, 0.1 * (high - low));
+  return std::max(low - margin - x, x - high - margin);
+}
+
+}  // namespace
 
 std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& rows) {
   std::vector<std::vector<std::size_t>> groups;
@@ -23,6 +35,20 @@ std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& r
     }
   }
   return groups;
+}
+
+std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& left_out) {
+  std::vector<SkillRow> rest;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) rest.push_back(rows[i]);
+  }
+  return rest;
+}
+
+std::vector<Labels> labels_of(const std::vector<SkillRow>& rows) {
+  std::vector<Labels> labels;
+  for (const auto& row : rows) labels.push_back(row.labels);
+  return labels;
 }
 
 Matrix left_out_residuals(const Skill& skill) {
@@ -79,17 +105,28 @@ Vector inputs_of(const SkillModel& model, const Reach& reach) {
 }
 
 double region_excess(const Skill& skill, const Reach& reach) {
+  const auto D = static_cast<Eigen::Index>(skill.columns.size());
   double excess = 0;
+  Matrix changes = Matrix::Zero(static_cast<Eigen::Index>(skill.rows.size()), D);
+  Vector change = Vector::Zero(D);
   for (const auto& model : skill.models) {
     const Vector x = inputs_of(model, reach);
     for (Eigen::Index j = 0; j < x.size(); ++j) {
       if (model.inputs[static_cast<std::size_t>(j)] == 2 * reach.change.size()) continue;  // a name has no region
       const auto column = model.process.X.col(j);
-      const double low = column.minCoeff();
-      const double high = column.maxCoeff();
-      const double margin = std::max(0.01, 0.1 * (high - low));
-      excess = std::max({excess, low - margin - x[j], x[j] - high - margin});
+      excess = std::max(excess, beyond(column, x[j]));
+      const int input = model.inputs[static_cast<std::size_t>(j)];
+      if (input >= D) continue;
+      changes.col(input) = column;
+      change[input] = x[j];
     }
+  }
+  const Matrix centred = changes.rowwise() - changes.colwise().mean();
+  const Matrix V = Eigen::JacobiSVD<Matrix>(centred, Eigen::ComputeFullV).matrixV();
+  const Matrix turned = changes * V;
+  const Eigen::RowVectorXd spans = turned.colwise().maxCoeff() - turned.colwise().minCoeff();
+  for (Eigen::Index k = 1; k < D; ++k) {
+    if (spans[k] < 0.1 * spans[0]) excess = std::max(excess, beyond(turned.col(k), V.col(k).dot(change)));
   }
   return excess;
 }

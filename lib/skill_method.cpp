@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "lfdtools/row_check.hpp"
 #include "lfdtools/ways.hpp"
 
 namespace lfd {
@@ -36,10 +37,11 @@ Predictor one_way(const std::vector<SkillRow>& rows, SkillOptions options, bool 
 }
 
 /// Where the rows go two ways round, a skill of each, of which a query gets that of the nearest target.
-Predictor learnt(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
+Predictor learnt(std::vector<SkillRow> rows, SkillOptions options, bool rows_are_means) {
+  rows = without(rows, repeated_rows(rows));
   const auto names = signal_names(rows.front().primitive.dimensions());
   options.kernel = choose_kernel(names, rows, options);
-  const auto ways = options.paper ? std::optional<Ways>() : two_ways(train_skill(names, rows, options));
+  const auto ways = options.paper ? std::optional<Ways>() : two_ways(train_skill(names, rows, options), rows);
   if (!ways || !is_trainable(rows_of_way(rows, *ways, 0)) || !is_trainable(rows_of_way(rows, *ways, 1))) {
     return one_way(rows, options, rows_are_means);
   }
@@ -62,7 +64,7 @@ Trainer skill_method(SkillStructure structure, ProcessType process) {
     learning.structure = structure;
     learning.process = process;
     learning.seed = options.seed;
-    return learnt(rows, learning, options.road == Road::references);
+    return learnt(std::move(rows), learning, options.road == Road::references);
   };
 }
 
@@ -74,7 +76,7 @@ Trainer paper_method(SkillStructure structure) {
     learning.paper = true;
     learning.structure = structure;
     learning.seed = options.seed;
-    return learnt(rows, learning, true);
+    return learnt(std::move(rows), learning, true);
   };
 }
 

@@ -33,7 +33,8 @@ void check_rows(const std::vector<std::string>& columns, const std::vector<Skill
     }
   }
   if (!is_trainable(rows)) {
-    throw DataError("skill.one_target", "every primitive has the same goal - start: nothing to generalise from");
+    throw DataError("skill.one_target",
+                    "every primitive is of one target or has the same goal - start: nothing to generalise from");
   }
 }
 
@@ -310,14 +311,16 @@ SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::ve
     return sum;
   };
   check_rows(columns, rows);
-  std::vector<Labels> labels;
-  for (const auto& row : rows) labels.push_back(row.labels);
-  if (target_groups(labels).size() < 4) return SkillKernel::sum;
+  if (target_groups(labels_of(rows)).size() < 4) return SkillKernel::sum;
   return missed(SkillKernel::additive) < missed(SkillKernel::sum) ? SkillKernel::additive : SkillKernel::sum;
 }
 
 bool is_trainable(const std::vector<SkillRow>& rows) {
   if (rows.size() < 2) return false;
+  const auto& name = rows.front().labels.target;
+  if (name && std::all_of(rows.begin(), rows.end(), [&](const auto& row) { return row.labels.target == name; })) {
+    return false;
+  }
   const Matrix X = changes(rows);
   const Eigen::RowVectorXd first = X.row(0);
   return (X.rowwise() - first).rowwise().norm().maxCoeff() >= 1e-6;

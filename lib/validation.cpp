@@ -96,6 +96,18 @@ std::string describe_fold(const Split& split, const std::vector<JudgedTarget>& j
   return words;
 }
 
+/// For each method the first of those chosen that gives the same: itself, or the one that it is by another name.
+std::vector<std::size_t> first_of_same(const std::vector<const Method*>& chosen) {
+  const auto root = [](const Method* method) { return method->same_as.empty() ? method->name : method->same_as; };
+  std::vector<std::size_t> first;
+  for (const Method* method : chosen) {
+    const auto found =
+        std::find_if(chosen.begin(), chosen.end(), [&](const Method* other) { return root(other) == root(method); });
+    first.push_back(static_cast<std::size_t>(found - chosen.begin()));
+  }
+  return first;
+}
+
 /// Every method learns from the training targets of each fold and is judged on those left out of it.
 /// @param folds  a target is left out of one at most
 Validation judge(const std::vector<TargetDemonstrations>& targets, const std::vector<Split>& folds,
@@ -128,9 +140,11 @@ Validation judge(const std::vector<TargetDemonstrations>& targets, const std::ve
   }
   validation.scores.resize(validation.noise_floor.size() * chosen.size());
   std::vector<double> seconds(folds.size() * chosen.size());
+  const auto first = first_of_same(chosen);
   parallel_for(seconds.size(), options.jobs, [&](std::size_t job) {
     const Split& split = folds[job / chosen.size()];
     const std::size_t m = job % chosen.size();
+    if (first[m] != m) return;
     const Method& method = *chosen[m];
     Fold fold;
     Neighbours neighbours;
@@ -150,13 +164,19 @@ Validation judge(const std::vector<TargetDemonstrations>& targets, const std::ve
     seconds[job] = processor_time() - begin;
     for (std::size_t k = 0; k < predicted.size(); ++k) {
       const std::size_t i = split.left_out[k];
-      validation.scores[place[i] * chosen.size() + m] = score(predicted[k], judged[i], neighbours, method.name);
+      const ValidationScore result = score(predicted[k], judged[i], neighbours, method.name);
+      for (std::size_t other = m; other < chosen.size(); ++other) {
+        if (first[other] != m) continue;
+        ValidationScore& own = validation.scores[place[i] * chosen.size() + other];
+        own = result;
+        own.method = chosen[other]->name;
+      }
     }
   });
 
   for (std::size_t m = 0; m < chosen.size(); ++m) {
     validation.times.push_back({chosen[m]->name, 0});
-    for (std::size_t f = 0; f < folds.size(); ++f) validation.times[m].seconds += seconds[f * chosen.size() + m];
+    for (std::size_t f = 0; f < folds.size(); ++f) validation.times[m].seconds += seconds[f * chosen.size() + first[m]];
   }
   for (const auto& split : folds) {
     for (const std::size_t i : split.training) validation.lifted_gates += training[i].small_change ? 1 : 0;

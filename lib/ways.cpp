@@ -12,7 +12,7 @@ namespace {
 constexpr int tries = 10;
 constexpr int max_iterations = 100;
 constexpr double least_separation = 5;
-constexpr double least_distance = 0.02;  // [m]
+constexpr double least_share = 0.05;
 
 KMeans best_split(const Matrix& residuals) {
   Random random(1);
@@ -26,7 +26,7 @@ KMeans best_split(const Matrix& residuals) {
 
 }  // namespace
 
-std::optional<Ways> two_ways(const Skill& skill) {
+std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& rows) {
   const Matrix residuals = left_out_residuals(skill);
   const Eigen::Index n = residuals.rows();
   if (n < 4) return {};
@@ -49,12 +49,14 @@ std::optional<Ways> two_ways(const Skill& skill) {
   }
   const double sd = std::sqrt((squares[0] / count[0] + squares[1] / count[1]) / 2);
   ways.separation = sd > 0 ? ways.distance / sd : std::numeric_limits<double>::infinity();
+  double reach = 0;
+  for (const auto& row : rows) reach += row.change().norm() / static_cast<double>(rows.size());
   const auto groups = target_groups(skill.rows);
   const bool mixed = std::any_of(groups.begin(), groups.end(), [&](const auto& group) {
     return std::any_of(group.begin(), group.end(),
                        [&](std::size_t i) { return ways.of_row[i] != ways.of_row[group[0]]; });
   });
-  if (!mixed || ways.distance < least_distance || !(ways.separation >= least_separation)) return {};
+  if (!mixed || ways.distance < least_share * reach || !(ways.separation >= least_separation)) return {};
   return ways;
 }
 

@@ -76,6 +76,7 @@ TEST_CASE("28 series look different, neighbours in more than colour") {
   for (std::size_t i = 0; i < 28; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       CHECK((look(i).color != look(j).color || look(i).dash != look(j).dash));
+      CHECK((look(i).color != look(j).color || look(i).marker != look(j).marker));
       CHECK((dense_look(i).color != dense_look(j).color || dense_look(i).dash != dense_look(j).dash));
     }
     CHECK(look(i).dash != look(i + 1).dash);

@@ -178,7 +178,29 @@ TEST_CASE("the demonstrated region is the widened range of each signal") {
   CHECK(region_excess(skill, vec(0.3, 0, 0.3)) == 0);
   CHECK(region_excess(skill, vec(0.415, 0, 0.3)) == 0);
   CHECK(region_excess(skill, vec(0.52, 0, 0.3)) == Approx(0.1));
-  CHECK(region_excess(skill, vec(0.3, -0.2, 0.3)) == Approx(0.07));
+  CHECK(region_excess(skill, vec(0.3, -0.2, 0.4)) == Approx(0.07));
+}
+
+TEST_CASE("beside targets on a slanted line or plane nothing was demonstrated") {
+  std::vector<SkillRow> line, plane;
+  for (const double x : {0.2, 0.3, 0.4}) {
+    const auto name = std::to_string(line.size());
+    line.push_back({{name, {}, {}, {}}, fit_dmp(motion_to(vec(x, 2 * x - 0.6, 0.3 - x), 2))});
+    for (const double y : {-0.1, 0.2}) {
+      plane.push_back({{name + std::to_string(y), {}, {}, {}}, fit_dmp(motion_to(vec(x, y, 0.3 - x + y), 2))});
+    }
+  }
+  for (const auto structure : {SkillStructure::full, SkillStructure::axis}) {
+    SkillOptions options;
+    options.structure = structure;
+    options.starts = 1;
+    const Skill on_line = train_skill(xyz, line, options);
+    CHECK(region_excess(on_line, vec(0.35, 0.1, -0.05)) == 0);
+    CHECK(region_excess(on_line, vec(0.4, 0.2, 0.1)) > 0.1);  // inside the interval of each signal
+    const Skill on_plane = train_skill(xyz, plane, options);
+    CHECK(region_excess(on_plane, vec(0.35, 0.05, 0.0)) == 0);
+    CHECK(region_excess(on_plane, vec(0.35, 0.05, 0.1)) == Approx(0.1 / std::sqrt(3) - 0.01));
+  }
 }
 
 TEST_CASE("teachers are told apart: each keeps to their own way, and nobody's way is less sure") {
@@ -265,6 +287,9 @@ TEST_CASE("rows that make no skill are refused") {
   auto rows = rows_on_grid();
   CHECK_THROWS_AS(train_skill(xyz, {rows.front()}), DataError);
   CHECK_THROWS_AS(train_skill(xyz, {rows.front(), rows.front()}), DataError);
+  auto same_name = rows;
+  for (auto& row : same_name) row.labels.target = "hole";
+  CHECK_THROWS_AS(train_skill(xyz, same_name), DataError);
   CHECK_THROWS_AS(train_skill({"x", "y"}, rows), DataError);
   DmpFitOptions other;
   other.bases = 10;

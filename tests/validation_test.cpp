@@ -49,6 +49,20 @@ TEST_CASE("scores of the line equal a computation by hand, for every target in o
   }
 }
 
+TEST_CASE("a method by two names is computed once and reported under both") {
+  ValidationOptions options;
+  options.methods = {"skill-full", "line", "skill"};
+  const Validation validation = leave_one_target_out(small_targets(), options);
+  REQUIRE(validation.scores.size() == 18);
+  for (std::size_t i = 0; i < validation.scores.size(); i += 3) {
+    CHECK(validation.scores[i].method == "skill-full");
+    CHECK(validation.scores[i + 2].method == "skill");
+    CHECK(validation.scores[i].rmse == validation.scores[i + 2].rmse);
+    CHECK(validation.scores[i + 1].rmse != validation.scores[i + 2].rmse);
+  }
+  CHECK(validation.times[0].seconds == validation.times[2].seconds);  // to the last digit: the same run
+}
+
 TEST_CASE("nothing of the left-out target but its ends reaches any method") {
   auto targets = small_targets();
   const auto before = leave_one_target_out(targets, every_method());

@@ -32,7 +32,7 @@ std::vector<SkillRow> motions(Side side, double wander) {
 }
 
 std::optional<Ways> ways_of(const std::vector<SkillRow>& rows) {
-  return two_ways(train_skill({"x", "y"}, rows));
+  return two_ways(train_skill({"x", "y"}, rows), rows);
 }
 
 }  // namespace

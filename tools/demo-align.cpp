@@ -1,10 +1,8 @@
 // Aligns the demonstrations of each target in time (paper Table 1, step 1).
 #include <fmt/format.h>
 
-#include "lfdtools/alignment.hpp"
+#include "lfdtools/cli/alignment_report.hpp"
 #include "lfdtools/cli/program.hpp"
-#include "lfdtools/io/demonstrations.hpp"
-#include "lfdtools/io/labelled_table.hpp"
 
 using namespace lfd;
 
@@ -16,35 +14,6 @@ Eigen::Index find_reference(const std::string& label, const Pool& pool) {
     if (pool.recordings[i].demonstration.labels.demo == label) return static_cast<Eigen::Index>(i);
   }
   throw DataError("align.no_reference", fmt::format("there is no demonstration {} ({})", label, describe(pool.labels)));
-}
-
-void report(const GroupAlignment& group, const Pool& pool, bool trim, cli::Run& run) {
-  for (std::size_t i = 0; i < pool.recordings.size(); ++i) {
-    const std::string name = describe(pool.recordings[i].demonstration.labels);
-    if (group.outliers[i]) {
-      run.messages().warning("align.outlier", fmt::format("{} is far from the others of its target", name));
-    }
-    if (trim) {
-      run.messages().note("align.trimmed", fmt::format("{}: cut {:.2f} s at the start, {:.2f} s at the end", name,
-                                                       group.trimmed[i].start, group.trimmed[i].end));
-    }
-  }
-  run.detail("align.reference",
-             fmt::format("{} is the reference",
-                         describe(pool.recordings[static_cast<std::size_t>(group.reference)].demonstration.labels)));
-}
-
-void write_costs(LabelledTable& table, const Pool& pool, const Matrix& costs) {
-  for (Eigen::Index a = 0; a < costs.rows(); ++a) {
-    for (Eigen::Index b = a + 1; b < costs.cols(); ++b) {
-      CsvWriter& writer = table.begin(pool.labels);
-      writer.labels(pool.labels);
-      for (const Eigen::Index i : {a, b})
-        writer.text(*pool.recordings[static_cast<std::size_t>(i)].demonstration.labels.demo);
-      writer.number(costs(a, b));
-      writer.end_row();
-    }
-  }
 }
 
 }  // namespace
@@ -92,11 +61,11 @@ int main(int argc, char** argv) {
         for (auto& trajectory : recorded) {
           if (options.trim) trajectory = trim(trajectory, *options.trim).trajectory;
         }
-        write_costs(table, pool, pairwise_costs(recorded, options.window, options.jobs));
+        cli::write_costs(table, pool, pairwise_costs(recorded, options.window, options.jobs));
         continue;
       }
       const GroupAlignment group = align(recorded, options);
-      report(group, pool, options.trim.has_value(), run);
+      cli::report(group, pool, options.trim.has_value(), run);
       for (std::size_t k = 0; k < group.kept.size(); ++k) {
         const auto& labels = pool.recordings[static_cast<std::size_t>(group.kept[k])].demonstration.labels;
         table.write(labels, beside(group.aligned[k].times, group.aligned[k].positions));

@@ -1,34 +1,15 @@
 // Learns a skill: weights as a function of goal - start (paper eq. (15)-(27)).
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <set>
-
-#include "lfdtools/calibration.hpp"
 #include "lfdtools/cli/program.hpp"
-#include "lfdtools/io/dmp_file.hpp"
+#include "lfdtools/cli/training.hpp"
 #include "lfdtools/io/skill_file.hpp"
-#include "lfdtools/ways.hpp"
+#include "lfdtools/io/training_rows.hpp"
 
 using namespace lfd;
 
-namespace {
-
-std::string describe(const Ways& ways) {
-  const auto second = std::count(ways.of_row.begin(), ways.of_row.end(), 1);
-  return fmt::format(
-      "the demonstrations go two ways round, {} one way and {} the other, {:.0f} mm and {:.1f} standard "
-      "deviations apart",
-      ways.of_row.size() - static_cast<std::size_t>(second), second, 1000 * ways.distance, ways.separation);
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
-  SkillOptions options;
-  bool calibrated = true;
+  cli::TrainingRequest request;
+  SkillOptions& options = request.options;
   std::int64_t starts = options.starts;
-  std::optional<std::int64_t> way;
   cli::Program program("mvgpr-train", "Learn a skill: movement primitives whose weights follow the target.");
   program.reads("DMP JSON of several targets").uses_jobs().uses_seed();
   program.flag("--paper", options.paper,
@@ -82,9 +63,11 @@ int main(int argc, char** argv) {
       throw UsageError("usage.exclusive", "--process student-t has its Omega integrated; without --omega ml");
     }
   });
-  program.choice("--calibration", calibrated, {{"targets", true}, {"none", false}},
+  program.choice("--calibration", request.calibrated, {{"targets", true}, {"none", false}},
                  "scale the bands by what is missed on targets left out in turn, or trust the process");
-  program.integer("--way", way, {1, 2}, "learn one of two ways round alone: 1 is that of the first primitive");
+  program.flag("--leave-out-outliers", request.leave_out_outliers,
+               "leave out rows that are far from what other targets say of them");
+  program.integer("--way", request.way, {1, 2}, "learn one of two ways round alone: 1 is that of the first primitive");
   program.gate("two_ways", "demonstrations of a target that go two ways round: their mean goes neither");
   program.integer("--starts", starts, {1, 1000}, "starts of the hyperparameter search");
   program.example("dmp-fit demos.csv | mvgpr-train -o skill.json", "every recording a row, in its own clock");
@@ -96,39 +79,12 @@ int main(int argc, char** argv) {
     options.seed = run.seed();
     options.jobs = run.jobs();
     JsonStream stream(run.open(), run.messages(), run.json_options());
-    std::vector<SkillRow> rows;
-    std::set<std::string> seen;
-    SkillFile file;
-    while (auto document = stream.next()) {
-      DmpFile row = read_dmp(*document);
-      if (rows.empty()) {
-        file.header.columns = row.header.columns;
-        file.header.provenance = row.header.provenance;
-      } else if (row.header.columns != file.header.columns) {
-        document->root().at("columns").fail("skill.mixed_settings", "the primitives have different columns");
-      }
-      const std::string name = describe(row.header.labels);
-      if (!name.empty() && !seen.insert(name).second) {
-        document->root().fail("json.group_reappears", name + " appears twice");
-      }
-      rows.push_back({row.header.labels, std::move(row.dmp)});
-    }
-    options.kernel = choose_kernel(file.header.columns, rows, options);
-    file.skill = train_skill(file.header.columns, rows, options);
-    if (const auto ways = options.paper ? std::optional<Ways>() : two_ways(file.skill)) {
-      if (!way) run.refuse("two_ways", describe(*ways) + "; --way 1 or 2 learns one of them");
-      if (way) {
-        rows = rows_of_way(rows, *ways, static_cast<int>(*way) - 1);
-        file.skill = train_skill(file.header.columns, rows, options);
-      }
-    } else if (way) {
-      throw DataError("skill.one_way", "the demonstrations go one way alone");
-    }
-    if (calibrated) file.skill.calibration = calibrate(file.skill, rows, options);
+    TrainingRows training = read_training_rows(stream);
+    SkillFile file{training.header, cli::learn(training.header.columns, training.rows, request, run)};
     file.header.provenance = append(file.header.provenance, run.provenance(stream.sha256()));
     double evidence = 0;
     for (const auto& model : file.skill.models) evidence += model.process.log_marginal_likelihood;
-    run.figure("rows", static_cast<double>(rows.size()));
+    run.figure("rows", static_cast<double>(file.skill.rows.size()));
     run.figure("log_marginal_likelihood", evidence);
     write_skill(file, run.output());
   });

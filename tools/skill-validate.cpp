@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "lfdtools/cli/program.hpp"
-#include "lfdtools/cli/suggestion_report.hpp"
+#include "lfdtools/cli/suggestion_request.hpp"
 #include "lfdtools/cli/validation_report.hpp"
 #include "lfdtools/io/folds.hpp"
 #include "lfdtools/io/targets.hpp"
@@ -28,53 +27,6 @@ void check_names(std::vector<std::string> written) {
   const auto first = std::find_if(written.begin(), written.end(), [](const auto& name) { return !name.empty(); });
   const auto twice = std::adjacent_find(first, written.end());
   if (twice != written.end()) throw UsageError("usage.same_file", *twice + " is to be written twice");
-}
-
-/// A file beside the output, whole or not at all.
-void write_file(const std::string& name, void (*write)(const Validation&, Output&), const Validation& validation) {
-  Output out(name);
-  write(validation, out);
-  out.finish();
-}
-
-/// low and high of each signal in turn.
-/// @throws UsageError [usage.arity], [usage.range]
-GoalBox goal_box(const std::vector<double>& region) {
-  if (region.empty() || region.size() % 2 != 0) {
-    throw UsageError("usage.arity", "--suggest takes two numbers a signal, the least and the greatest of each in turn");
-  }
-  const Eigen::Map<const Matrix> ends(region.data(), 2, static_cast<Eigen::Index>(region.size() / 2));
-  if ((ends.row(0).array() > ends.row(1).array()).any()) {
-    throw UsageError("usage.range", "--suggest: the box is empty, a least value is over the greatest");
-  }
-  return {ends.row(0).transpose(), ends.row(1).transpose()};
-}
-
-/// The default skill of all targets, and what to demonstrate next.
-void suggest_target(const std::vector<TargetDemonstrations>& targets, const std::vector<std::string>& columns,
-                    const GoalBox& box, const PreparationOptions& preparation, cli::Run& run) {
-  if (box.low.size() != static_cast<Eigen::Index>(columns.size())) {
-    throw UsageError("usage.arity", fmt::format("--suggest takes {} numbers here, two a signal, not {}",
-                                                2 * columns.size(), 2 * box.low.size()));
-  }
-  std::vector<SkillRow> rows;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    const TrainingTarget target = training_target(targets[i].labels, recorded(targets[i], preparation.alignment),
-                                                  preparation, {.primitives = true}, i);
-    for (std::size_t k = 0; k < target.examples.size(); ++k) {
-      rows.push_back({targets[i].demonstration_labels[k], target.examples[k].primitive});
-    }
-  }
-  SkillOptions options;
-  options.seed = run.seed();
-  options.jobs = run.jobs();
-  options.kernel = choose_kernel(columns, rows, options);
-  Skill skill = train_skill(columns, rows, options);
-  skill.calibration = calibrate(skill, rows, options);
-  const double repetitions = std::round(static_cast<double>(rows.size()) / static_cast<double>(targets.size()));
-  const Suggestion suggestion = suggest(SkillPredictor(std::move(skill)), box, repetitions);
-  cli::report(suggestion, columns, rows, run);
-  cli::write_suggestion(suggestion, columns, rows, run.output());
 }
 
 }  // namespace
@@ -121,7 +73,7 @@ int main(int argc, char** argv) {
   program.numbers("--suggest", region, {}, "instead: the target in a box of goals that would teach most");
   program.check([&] {
     if (!region) return;
-    (void)goal_box(*region);
+    (void)cli::goal_box(*region);
     for (const char* other :
          {"--methods", "--road", "--folds", "--test", "--repetitions", "--components", "--table", "--reliability"}) {
       if (program.given(other)) {
@@ -145,15 +97,15 @@ int main(int argc, char** argv) {
     if (repetitions) rows.repetitions = static_cast<std::size_t>(*repetitions);
     rows.seed = run.seed();
     options.jobs = run.jobs();
-    if (region) return suggest_target(targets, source.columns(), goal_box(*region), rows, run);
+    if (region) return cli::suggest_target(targets, source.columns(), cli::goal_box(*region), rows, run);
     const Validation validation =
         test.empty()
             ? leave_one_target_out(targets, options)
             : judge_on_test_targets(
                   targets, read_test_targets(test, source.columns(), targets, noise_free, run.messages()), options);
     cli::report(validation, run);
-    if (table && !table->empty()) write_file(*table, cli::write_table, validation);
-    if (!reliability.empty()) write_file(reliability, cli::write_reliability, validation);
+    if (table && !table->empty()) cli::write_table(validation, run.beside(*table));
+    if (!reliability.empty()) cli::write_reliability(validation, run.beside(reliability));
     table && table->empty() ? cli::write_table(validation, run.output()) : cli::write_scores(validation, run.output());
   });
 }

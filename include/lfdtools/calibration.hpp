@@ -31,8 +31,9 @@ enum class BandKind {
 };
 
 /// What the intention at a new target may do: half-width of the band about the predicted motion, T x D [m],
-/// factor * sqrt(variance of the intention + target_variance + reproduction^2). Without a calibration the factor is the
-/// quantile of the process's Student-t and the band is only as honest as the process.
+/// sqrt(factor^2 (unit (latent + target_variance) + reproduction^2) + q^2 unit noise / repetitions), where q is the
+/// normal quantile of the level, for whole paths times the ratio of both factors. Without a calibration the factor is
+/// the quantile of the process's Student-t and the band is only as honest as the process.
 /// @param level        share promised, in (0, 1)
 /// @param repetitions  of the mean path that is to be held: its noise is added; infinite: of the intention itself
 [[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,

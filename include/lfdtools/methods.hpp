@@ -14,6 +14,7 @@ struct Method {
   bool simple = false;  ///< an opponent that any skill must beat: line, nearest, mean, affine in their forms
   Needs needs;
   Trainer train;
+  std::string same_as;  ///< the method that this one is by another name today; empty: none
 };
 
 /// All of them, in the order of tables.

@@ -148,9 +148,9 @@ struct Skill {
 /// evidence times priors; but for the paper's process, with the evidence to the power (targets / rows), because rows of
 /// a target share what sets it apart and are not the independent witnesses that the process takes them for.
 /// @param columns  D signal names, as the rows' axes
-/// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every dP is the same;
-///         [skill.tempo] if a shared tempo is asked for where there is none; UsageError [skill.teachers]; those of
-///         train_mvgp
+/// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every row names the same
+///         target or every dP is the same; [skill.tempo] if a shared tempo is asked for where there is none; UsageError
+///         [skill.teachers]; those of train_mvgp
 [[nodiscard]] Skill train_skill(const std::vector<std::string>& columns, const std::vector<SkillRow>& rows,
                                 const SkillOptions& options = {});
 
@@ -164,11 +164,17 @@ struct Skill {
 /// Positions of the rows of each target and teacher, by first appearance. A row that names no target is one of its own.
 [[nodiscard]] std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& rows);
 
+[[nodiscard]] std::vector<Labels> labels_of(const std::vector<SkillRow>& rows);
+
+/// The rows whose positions are not among those of `left_out`.
+[[nodiscard]] std::vector<SkillRow> without(const std::vector<SkillRow>& rows,
+                                            const std::vector<std::size_t>& left_out);
+
 /// What is left of each row when its target is left out and predicted from the others with the skill's own
 /// hyperparameters, n x (D N): by signal, then by basis, in the metric of each model.
 [[nodiscard]] Matrix left_out_residuals(const Skill& skill);
 
-/// Whether rows can make a skill: at least two, whose dP differ.
+/// Whether rows can make a skill: at least two, which do not all name one target, and whose dP differ.
 [[nodiscard]] bool is_trainable(const std::vector<SkillRow>& rows);
 
 /// Whether the processes see the start as well.
@@ -193,8 +199,10 @@ struct Skill {
 [[nodiscard]] Vector line_weights(const DmpSettings& settings);
 
 /// The demonstrated region: for each input of the models (goal - start of each signal, and where they see it the start)
-/// the interval that the rows span, widened at both ends by a tenth of its length and at least 10 mm.
-/// @return how far a reach lies outside, the largest over the inputs [m]; 0 inside
+/// the interval that the rows span, widened at both ends by a tenth of its length and at least 10 mm; and the same
+/// along each principal direction of dP in which the rows span under a tenth of what they span in the first, so that
+/// rows on a line or a plane in any direction show nothing beside it.
+/// @return how far a reach lies outside, the largest over the inputs and directions [m]; 0 inside
 [[nodiscard]] double region_excess(const Skill& skill, const Reach& reach);
 
 /// Weights for one target.

@@ -15,11 +15,11 @@ struct Ways {
 
 /// Looks for two ways in what is left of each row when its target is left out (left_out_residuals), so that what
 /// follows the target smoothly is gone: the best 2-means split, projected onto the line between its centers. Two ways
-/// are told where these are at least 20 mm and five standard deviations apart (Ashman's D; splitting a normal
-/// distribution in the middle gives 2.6, a uniform one 3.5), each is that of a tenth of the rows and of two at least,
-/// and some target was reached both ways: a jump from target to target may as well be what is meant.
-/// @param skill  learnt from the rows, with an output transform
-[[nodiscard]] std::optional<Ways> two_ways(const Skill& skill);
+/// are told where these are at least 5 % of the mean |dP| and five standard deviations apart (Ashman's D; splitting a
+/// normal distribution in the middle gives 2.6, a uniform one 3.5), each is that of a tenth of the rows and of two at
+/// least, and some target was reached both ways: a jump from target to target may as well be what is meant.
+/// @param skill  learnt from these rows, with an output transform
+[[nodiscard]] std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& rows);
 
 /// Way of most rows of the target nearest to a goal, by change.
 [[nodiscard]] int nearest_way(const std::vector<SkillRow>& rows, const Ways& ways, const Vector& change);

@@ -13,6 +13,8 @@ namespace {
 constexpr double long_gap = 10;     // median periods
 constexpr double slow_period = 1;   // [s]: no hand is recorded more slowly
 constexpr double far_start = 0.02;  // [m]
+constexpr double far_away = 20;     // [m]: no hand reaches so far
+const std::vector<std::string> position_columns{"x", "y", "z"};
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -75,6 +77,19 @@ void warn_of_sampling(const Recording& recording, Messages& messages) {
   }
 }
 
+/// Positions that no hand reaches in metres. @return whether there were any
+bool warn_of_unit(const Recording& recording, const std::vector<std::string>& columns, Messages& messages) {
+  if (columns != position_columns) return false;
+  Eigen::Index row = 0, column = 0;
+  const double largest = recording.demonstration.trajectory.positions.cwiseAbs().maxCoeff(&row, &column);
+  if (largest <= far_away) return false;
+  messages.warning("demo.unit",
+                   columns[static_cast<std::size_t>(column)] + " reaches " + number_text(rounded(largest)) +
+                       ": are the positions in millimetres? metres are needed",
+                   recording.place(row));
+  return true;
+}
+
 void warn_of_starts(const Pool& pool, Messages& messages) {
   double widest = 0;
   const Recording* far = nullptr;
@@ -100,7 +115,7 @@ void warn_of_starts(const Pool& pool, Messages& messages) {
 }  // namespace
 
 std::vector<std::string> signal_columns(const CsvTable& table) {
-  const std::vector<std::string> position{"x", "y", "z"};
+  const auto& position = position_columns;
   if (std::all_of(position.begin(), position.end(), [&](const std::string& name) { return table.has(name); })) {
     return position;
   }
@@ -209,6 +224,7 @@ Recording DemonstrationSource::recording(std::size_t i) const {
   recording.file = block.file;
   for (const Eigen::Index k : kept) recording.lines.push_back(block.first_line + static_cast<std::size_t>(k));
   warn_of_sampling(recording, messages_);
+  if (!warned_of_unit_) warned_of_unit_ = warn_of_unit(recording, columns_, messages_);
   return recording;
 }
 

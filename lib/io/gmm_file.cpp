@@ -160,6 +160,28 @@ GmmFile read_gmm(const JsonDocument& document) {
   return file;
 }
 
+GmmFile gmm_file(ComponentSelection selection, const CriterionOptions& criterion, CovarianceType type) {
+  GmmFile file;
+  GmmFit& fit = selection.fit;
+  file.covariance_type = type;
+  file.gmm = std::move(fit.gmm);
+  file.regularization = fit.regularization;
+  file.log_likelihood = fit.log_likelihood;
+  file.criterion = criterion.criterion;
+  file.likelihood = criterion.likelihood;
+  file.bic = fit.bic;
+  file.aic = fit.aic;
+  file.icl = fit.icl;
+  file.parameters = fit.parameters;
+  file.entropy = fit.entropy;
+  file.samples = fit.samples;
+  file.bic_n = selection.bic_n;
+  file.iterations = fit.iterations;
+  file.converged = fit.converged;
+  file.selection = std::move(selection.table);
+  return file;
+}
+
 void write_gmm(const GmmFile& file, Output& out) {
   JsonWriter json;
   write_header(json, format, file.header);

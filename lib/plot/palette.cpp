@@ -15,7 +15,8 @@ constexpr std::array<MarkerShape, 7> markers{MarkerShape::circle,  MarkerShape::
 }  // namespace
 
 Look look(std::size_t i) {
-  return {colors[i % colors.size()], dashes[i % dashes.size()], markers[i % markers.size()]};
+  // Where the colours begin anew the markers go on by one: no colour meets a marker twice in 49 series.
+  return {colors[i % colors.size()], dashes[i % dashes.size()], markers[(i + i / colors.size()) % markers.size()]};
 }
 
 Look dense_look(std::size_t i) {

@@ -47,8 +47,9 @@ struct Pool {
 /// Refused, DataError with the line: time that goes back [demo.time_falls], equal times with different data
 /// [demo.time_repeats], a constant time [demo.time_constant], too few samples [demo.too_few_samples].
 /// Warned: identical rows, which are collapsed [demo.identical_rows]; a gap of over ten times the median period
-/// [demo.gap]; a median period of over one second, as of times in ms, us or ns [demo.period]; starts of a pool that lie
-/// over 0.02 (20 mm) apart [demo.starts_differ]. Columns without a use are named in a note [csv.ignored_columns].
+/// [demo.gap]; a median period of over one second, as of times in ms, us or ns [demo.period]; once, x,y,z over 20 m, as
+/// of positions in mm [demo.unit]; starts of a pool that lie over 0.02 (20 mm) apart [demo.starts_differ]. Columns
+/// without a use are named in a note [csv.ignored_columns].
 class DemonstrationSource {
  public:
   /// @throws DataError [csv.missing_column], [demo.no_signal]; UsageError [demo.bad_column] for a signal that is a
@@ -75,6 +76,7 @@ class DemonstrationSource {
   std::vector<std::string> columns_;
   std::vector<std::string> read_;                // t, signals, extras
   std::vector<std::vector<std::size_t>> pools_;  // groups of each pool
+  mutable bool warned_of_unit_ = false;
 };
 
 }  // namespace lfd

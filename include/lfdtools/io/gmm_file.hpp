@@ -40,6 +40,9 @@ struct GmmFile {
 ///         [gmm.not_positive_definite], [gmm.covariance_type] for covariances that are none of the type
 [[nodiscard]] GmmFile read_gmm(const JsonDocument& document);
 
+/// What a fit says of itself; header, time_range, start and goal are left for those who know the data.
+[[nodiscard]] GmmFile gmm_file(ComponentSelection selection, const CriterionOptions& criterion, CovarianceType type);
+
 /// One line.
 void write_gmm(const GmmFile& file, Output& out);
 

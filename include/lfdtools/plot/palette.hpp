@@ -23,7 +23,7 @@ struct Look {
 };
 
 /// Look of series number i, from 0. Colours of Okabe and Ito (2008) without yellow, which is lost on white; neighbours
-/// differ in colour, dash and marker, and 28 series in colour or dash.
+/// differ in colour, dash and marker, 28 series in colour or dash, 49 in colour or marker.
 [[nodiscard]] Look look(std::size_t i);
 /// The same for many thin lines, which are solid as long as the colours suffice, for 7 series.
 [[nodiscard]] Look dense_look(std::size_t i);

@@ -12,7 +12,7 @@ _lfdtools_options() {
     gmr-regress) echo "$common -n --samples --sd --covariance --derivatives" ;;
     dmp-fit) echo "$common $table $gates --paper -n --basis --alpha-z --beta-z --alpha-x --scaling --fit" ;;
     mvgpr-train) echo "$common $gates -j --jobs --seed --paper --model --inputs --kernel --mean --tempo --teachers" \
-                      "--omega --process --calibration --way --starts" ;;
+                      "--omega --process --calibration --leave-out-outliers --way --starts" ;;
     skill-generate) echo "$common $gates -j --jobs --seed --goal --goals --target --start --duration --dt --weights" \
                          "--derivatives --camera --via --goal-at --start-velocity --end-velocity --approach --sd" \
                          "--band --samples --covariance --max-sd" ;;
