@@ -97,6 +97,11 @@ Vector effect_of_target(const std::vector<Miss>& misses) {
   return missed.cwiseMax(latent);
 }
 
+/// Of the mean of some demonstrations, T x D [m^2].
+Samples of_noise(const PositionVariance& variance, double repetitions) {
+  return variance.unit * (variance.noise / repetitions).asDiagonal();
+}
+
 /// What the factors multiply the root of, T x D [m^2].
 Samples of_intention(const PositionVariance& variance, const Calibration& calibration) {
   Samples total = variance.of_mean(calibration.target_variance, infinite);
@@ -162,8 +167,8 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
   const double scale = factor(*calibration, kind, level);
   const double pointwise = factor(*calibration, BandKind::pointwise, level);
   const double noise = (pointwise > 0 ? scale / pointwise : 1) * student_t_quantile(0.5 + level / 2, infinite);
-  const Samples of_noise = variance.unit * (variance.noise / repetitions).asDiagonal();
-  return (scale * scale * of_intention(variance, *calibration) + noise * noise * of_noise).cwiseSqrt();
+  return (scale * scale * of_intention(variance, *calibration) + noise * noise * of_noise(variance, repetitions))
+      .cwiseSqrt();
 }
 
 std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
@@ -195,7 +200,7 @@ std::optional<Calibration> calibrate(const Skill& skill, const std::vector<Skill
 
   std::vector<double> all, greatest;
   for (const auto& miss : misses) {
-    const Samples variance = of_intention(miss.variance, calibration);
+    const Samples variance = of_intention(miss.variance, calibration) + of_noise(miss.variance, miss.repetitions);
     // Both ends are given to the motion, so they say nothing.
     const Samples ratio =
         (miss.error.cwiseAbs().array() / variance.array().max(1e-24).sqrt()).middleRows(1, phase_count - 2);

@@ -129,7 +129,7 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
         latent += variance.latent / 5;
         continue;
       }
-      Samples sd = variance.of_mean(effect.cwiseMax(latent), INFINITY);
+      Samples sd = variance.of_mean(effect.cwiseMax(latent), 4);
       for (int j = 0; j < 2; ++j) sd.col(j).array() += calibration->reproduction[j] * calibration->reproduction[j];
       greatest.push_back(((predicted - mean).cwiseAbs().array() / sd.array().sqrt()).middleRows(1, 198).maxCoeff());
     }
