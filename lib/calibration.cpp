@@ -178,6 +178,7 @@ std::optional<Calibration> calibrate(const Skill& skill, const std::vector<Skill
   SkillOptions searching = options;
   searching.starts = 1;
   searching.jobs = 1;
+  searching.teachers = sees_teachers(skill) ? SkillTeachers::apart : SkillTeachers::together;
   searching.inputs = sees_starts(skill) ? SkillInputs::change_and_start : SkillInputs::change;
   SkillOptions knowing = searching;
   knowing.hyperparameters = &skill;

@@ -192,7 +192,7 @@ Vector hyperparameters_of_maximum_evidence(const Matrix& X, const std::vector<Ou
   BoxMinimum best = refine(first);
   // A part of the rows says less about which optimum is better, but there another descent costs more.
   const bool partial = stages.size() > 1;
-  const double margin = partial ? 5.0 : 0.5;
+  const double margin = (partial ? 5.0 : 0.5) * options.evidence_power;
   int others = partial ? 1 : 4;
   for (const auto& next : candidates) {
     if (others == 0 || next.value > first.value + margin) break;

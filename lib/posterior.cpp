@@ -170,7 +170,8 @@ Samples motion_band(const SkillPredictor& predictor, const MotionPosterior& post
                     BandKind kind, double level) {
   if (!predictor.skill().calibration) return band(posterior, times, kind, level);
   const Dmp& dmp = posterior.course.primitive;
-  const Reach reach(dmp.goal - dmp.start, dmp.start - predictor.skill().start);
+  Reach reach(dmp.goal - dmp.start, dmp.start - predictor.skill().start);
+  reach.teacher = posterior.teacher;
   const Vector phases = times / dmp.tau;
   const Samples half = band(predictor, reach, phases, kind, level);
   if (!posterior.constrained) return half;

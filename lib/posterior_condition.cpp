@@ -224,6 +224,7 @@ MotionPosterior predict_motion(const SkillPredictor& predictor, const Goal& goal
   MotionPosterior posterior;
   Dmp& dmp = posterior.course.primitive;
   dmp = predictor.primitive(goal);
+  posterior.teacher = predictor.reach(goal).teacher;
   if (constraints.start_velocity) posterior.course.start_velocity = *constraints.start_velocity;
   for (std::size_t m = 0; m < skill.models.size(); ++m) {
     posterior.blocks.push_back(

@@ -155,7 +155,7 @@ WeightPrediction SkillPredictor::weights(const Reach& reach) const {
 Reach SkillPredictor::reach(const Goal& goal) const {
   const Vector start = goal.start.value_or(skill_.start);
   Reach reach(goal.position - start, start - skill_.start);
-  if (goal.labels.teacher) reach.teacher = teacher_number(skill_.rows, goal.labels.teacher);
+  reach.teacher = teacher_number(skill_.rows, goal.labels.teacher);
   return reach;
 }
 

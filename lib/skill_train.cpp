@@ -64,7 +64,8 @@ bool tells_teachers_apart(const std::vector<Labels>& rows, const SkillOptions& o
   if (options.hyperparameters != nullptr) return sees_teachers(*options.hyperparameters);
   const bool sum = options.kernel == SkillKernel::automatic || options.kernel == SkillKernel::sum ||
                    options.kernel == SkillKernel::additive;
-  const bool known = options.mean == SkillMean::automatic || options.mean == SkillMean::line;
+  const bool known =
+      options.mean == SkillMean::automatic || options.mean == SkillMean::line || options.mean == SkillMean::zero;
   const bool possible = !options.paper && sum && known;
   if (options.teachers == SkillTeachers::apart && !possible) {
     throw UsageError(

@@ -1,6 +1,5 @@
 #include "lfdtools/tempo.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +8,13 @@
 namespace lfd {
 namespace {
 
-constexpr Eigen::Index samples = 200;
 constexpr double pi = 3.14159265358979323846;
 
 /// Weights of sin(pi s) dy/ds for a motion y, D x N: what makes its hand early.
 Matrix earliness(const Dmp& motion) {
   Dmp unit = motion;
   unit.tau = 1;
-  const Vector s = linspace(0, 1, samples);
+  const Vector s = linspace(0, 1, std::max<Eigen::Index>(200, 4 * motion.settings.bases()));
   const Samples change = (s * pi).array().sin().matrix().asDiagonal() * rollout(unit, s).velocities;
   DmpFitOptions fit;
   fit.settings = motion.settings;
@@ -58,7 +56,7 @@ TargetTempo target_tempo(const Matrix& metric, const std::vector<SkillRow>& rows
     const Matrix missed = by_axis(residuals, i, N);
     // W = Y A^-1
     predicted.weights +=
-        (row.weights - metric.transpose().partialPivLu().solve(missed.transpose()).transpose()) / count;
+        (row.weights - metric.transpose().triangularView<Eigen::Upper>().solve(missed.transpose()).transpose()) / count;
   }
   TargetTempo tempo{std::move(group), earliness(predicted), {}};
   const Matrix direction = tempo.direction * metric;

@@ -13,6 +13,7 @@ constexpr int tries = 10;
 constexpr int max_iterations = 100;
 constexpr double least_separation = 5;
 constexpr double least_share = 0.05;
+constexpr Eigen::Index least_rows = 20;
 
 KMeans best_split(const Matrix& residuals) {
   Random random(1);
@@ -29,12 +30,12 @@ KMeans best_split(const Matrix& residuals) {
 std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& rows) {
   const Matrix residuals = left_out_residuals(skill);
   const Eigen::Index n = residuals.rows();
-  if (n < 4) return {};
+  if (n < least_rows || skill.dmp.scaling == DmpScaling::goal) return {};
   KMeans split = best_split(residuals);
   const int first = split.labels.front();
   for (int& label : split.labels) label = label == first ? 0 : 1;
   const auto second = static_cast<Eigen::Index>(std::count(split.labels.begin(), split.labels.end(), 1));
-  if (std::min(second, n - second) < std::max<Eigen::Index>(2, n / 10)) return {};
+  if (std::min(second, n - second) < (n + 9) / 10) return {};
   const Eigen::RowVectorXd between = split.centers.row(1 - first) - split.centers.row(first);
   Ways ways{std::move(split.labels), between.norm(), 0};
   if (!(ways.distance > 0)) return {};

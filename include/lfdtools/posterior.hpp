@@ -47,6 +47,7 @@ struct MotionPosterior {
   Course course;                       ///< with the mean of the weights
   std::vector<PosteriorBlock> blocks;  ///< independent of each other
   bool constrained = false;            ///< there were demands beside the end
+  int teacher = -1;                    ///< Reach::teacher
   bool ends_on_goal = false;           ///< y(tau) = g was demanded: no spread there
   double distance = 0;                 ///< Mahalanobis distance of the demands from the prediction, latent [1]
 };

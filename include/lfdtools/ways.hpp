@@ -16,8 +16,10 @@ struct Ways {
 /// Looks for two ways in what is left of each row when its target is left out (left_out_residuals), so that what
 /// follows the target smoothly is gone: the best 2-means split, projected onto the line between its centers. Two ways
 /// are told where these are at least 5 % of the mean |dP| and five standard deviations apart (Ashman's D; splitting a
-/// normal distribution in the middle gives 2.6, a uniform one 3.5), each is that of a tenth of the rows and of two at
-/// least, and some target was reached both ways: a jump from target to target may as well be what is meant.
+/// normal distribution in the middle gives 2.6, a uniform one 3.5), each is that of a tenth of the rows at least,
+/// and some target was reached both ways: a jump from target to target may as well be what is meant.
+/// Not looked for under twenty rows, where the best split of mere scatter is as clear, and in weights of scaling goal,
+/// which are no distances.
 /// @param skill  learnt from these rows, with an output transform
 [[nodiscard]] std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& rows);
 

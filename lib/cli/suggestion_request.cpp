@@ -37,6 +37,7 @@ void suggest_target(const std::vector<TargetDemonstrations>& targets, const std:
   }
   TrainingRequest request;
   request.two_ways_refused = false;
+  request.options.teachers = SkillTeachers::together;  // whose the next demonstration will be is not asked
   request.options.seed = run.seed();
   request.options.jobs = run.jobs();
   Skill skill = learn(columns, rows, request, run);
