@@ -18,11 +18,9 @@ std::vector<std::string> signal_names(Eigen::Index D) {
   return names;
 }
 
-/// @param options         with the kernel to learn with
+/// @param rows, options   those that the skill was trained with
 /// @param rows_are_means  a row is a mean of demonstrations already, so its noise is that of a mean
-Predictor one_way(const std::vector<SkillRow>& rows, SkillOptions options, bool rows_are_means) {
-  const auto names = signal_names(rows.front().primitive.dimensions());
-  Skill trained = train_skill(names, rows, options);
+Predictor one_way(Skill trained, const std::vector<SkillRow>& rows, const SkillOptions& options, bool rows_are_means) {
   trained.calibration = calibrate(trained, rows, options);
   const auto skill = std::make_shared<const SkillPredictor>(std::move(trained));
   return [skill, rows_are_means](const Query& query) {
@@ -41,12 +39,16 @@ Predictor learnt(std::vector<SkillRow> rows, SkillOptions options, bool rows_are
   rows = without(rows, repeated_rows(rows));
   const auto names = signal_names(rows.front().primitive.dimensions());
   options.kernel = choose_kernel(names, rows, options);
-  const auto ways = options.paper ? std::optional<Ways>() : two_ways(train_skill(names, rows, options), rows);
+  Skill together = train_skill(names, rows, options);
+  const auto ways = options.paper ? std::optional<Ways>() : two_ways(together, rows);
   if (!ways || !is_trainable(rows_of_way(rows, *ways, 0)) || !is_trainable(rows_of_way(rows, *ways, 1))) {
-    return one_way(rows, options, rows_are_means);
+    return one_way(std::move(together), rows, options, rows_are_means);
   }
   std::vector<Predictor> predictors;
-  for (const int way : {0, 1}) predictors.push_back(one_way(rows_of_way(rows, *ways, way), options, rows_are_means));
+  for (const int way : {0, 1}) {
+    const auto of_way = rows_of_way(rows, *ways, way);
+    predictors.push_back(one_way(train_skill(names, of_way, options), of_way, options, rows_are_means));
+  }
   return [predictors, rows, ways = *ways](const Query& query) {
     return predictors[static_cast<std::size_t>(nearest_way(rows, ways, query.change()))](query);
   };

@@ -70,7 +70,7 @@ bool tells_teachers_apart(const std::vector<Labels>& rows, const SkillOptions& o
   if (options.teachers == SkillTeachers::apart && !possible) {
     throw UsageError(
         "skill.teachers",
-        "teachers can be told apart with kernel sum or additive and mean line, not with the paper's process");
+        "teachers can be told apart with kernel sum or additive and mean line or zero, not with the paper's process");
   }
   const auto other = [&](const Labels& row) { return row.teacher != rows.front().teacher; };
   return possible && (options.teachers == SkillTeachers::apart ||

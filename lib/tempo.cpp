@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lfdtools/dmp_fit.hpp"
 
 namespace lfd {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Weights of sin(pi s) dy/ds for a motion y, D x N: what makes its hand early.
 Matrix earliness(const Dmp& motion) {
   Dmp unit = motion;
   unit.tau = 1;
   const Vector s = linspace(0, 1, std::max<Eigen::Index>(200, 4 * motion.settings.bases()));
-  const Samples change = (s * pi).array().sin().matrix().asDiagonal() * rollout(unit, s).velocities;
+  const Samples change = (s * std::numbers::pi).array().sin().matrix().asDiagonal() * rollout(unit, s).velocities;
   DmpFitOptions fit;
   fit.settings = motion.settings;
   fit.start = fit.goal = Vector::Zero(motion.dimensions());

@@ -62,11 +62,9 @@ std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& ro
 }
 
 int nearest_way(const std::vector<SkillRow>& rows, const Ways& ways, const Vector& change) {
-  std::vector<Labels> labels;
-  for (const auto& row : rows) labels.push_back(row.labels);
   double nearest = std::numeric_limits<double>::infinity();
   int way = 0;
-  for (const auto& group : target_groups(labels)) {
+  for (const auto& group : target_groups(labels_of(rows))) {
     const double distance = (rows[group.front()].change() - change).norm();
     if (!(distance < nearest)) continue;
     nearest = distance;

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
     if (options.process == ProcessType::student_t && options.omega == OmegaRule::ml) {
       throw UsageError("usage.exclusive", "--process student-t has its Omega integrated; without --omega ml");
     }
+    if (options.paper && request.way) throw UsageError("usage.exclusive", "--paper looks for no ways round");
   });
   program.choice("--calibration", request.calibrated, {{"targets", true}, {"none", false}},
                  "scale the bands by what is missed on targets left out in turn, or trust the process");

@@ -96,7 +96,7 @@ class KernelMatrix {
  private:
   Matrix X_;
   Kernel kernel_;
-  std::vector<Matrix> K_;      // lower triangle of each radial term
+  std::vector<Matrix> K_;      // lower triangle of each term; empty for a constant that holds between all rows
   std::vector<Matrix> slope_;  // dk / d ln l_j = slope * ((a_j - b_j) / l_j)^2; empty where that is K itself (se-ard)
 };
 

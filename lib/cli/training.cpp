@@ -78,7 +78,6 @@ Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow>& rows
   };
   auto [skill, options] = train();
   const auto ways = request.options.paper ? std::optional<Ways>() : two_ways(skill, rows);
-  if (options.paper && request.way) throw UsageError("usage.exclusive", "--paper looks for no ways round");
   if (!ways && request.way) throw DataError("skill.one_way", "the demonstrations go one way alone");
   if (ways && request.way) {
     rows = rows_of_way(rows, *ways, static_cast<int>(*request.way) - 1);
