@@ -9,7 +9,7 @@
 namespace lfd {
 namespace {
 
-constexpr Eigen::Index phase_count = 200;
+constexpr double least_factor = 0.5;  // in normal quantiles
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Targets without which there is still something to learn from.
@@ -19,7 +19,19 @@ std::vector<std::vector<std::size_t>> groups_to_leave_out(const std::vector<Skil
   return groups;
 }
 
-/// What was missed on one target.
+/// Positions of the rows of a target, by teacher.
+std::vector<std::vector<std::size_t>> repetitions_in(const std::vector<SkillRow>& rows,
+                                                     const std::vector<std::size_t>& target) {
+  std::vector<Labels> labels;
+  for (const std::size_t i : target) labels.push_back(rows[i].labels);
+  auto groups = repetition_groups(labels);
+  for (auto& group : groups) {
+    for (std::size_t& i : group) i = target[i];
+  }
+  return groups;
+}
+
+/// What was missed on one target, as one teacher reaches it.
 struct Miss {
   Samples error;  // phase_count x D [m]
   PositionVariance variance;
@@ -75,24 +87,24 @@ double conformal_quantile(const std::vector<double>& sorted, double share) {
   return sorted[std::min(sorted.size(), static_cast<std::size_t>(std::max(1.0, rank))) - 1];
 }
 
-/// The sd was measured on m targets, so what a new one misses in its units has the tails of a Student-t with m - 1
-/// degrees of freedom.
-double few_targets(std::size_t m, double level) {
-  return student_t_quantile((1 + level) / 2, static_cast<double>(m) - 1) /
-         student_t_quantile((1 + level) / 2, infinite);
+/// An sd that was measured on few values has the tails of a Student-t: by how much its quantile exceeds the normal one.
+double few_values(double degrees_of_freedom, double level) {
+  return student_t_quantile((1 + level) / 2, degrees_of_freedom) / student_t_quantile((1 + level) / 2, infinite);
 }
 
-Vector effect_of_target(const std::vector<Miss>& misses) {
-  const double m = static_cast<double>(misses.size());
-  Vector missed = Vector::Zero(misses.front().error.cols());
+Vector effect_of_target(const std::vector<std::vector<Miss>>& misses) {
+  Vector missed = Vector::Zero(misses.front().front().error.cols());
   Vector latent = missed;
-  for (const auto& miss : misses) {
-    for (Eigen::Index j = 0; j < missed.size(); ++j) {
-      const double unit = miss.variance.unit.col(j).sum();
-      if (unit > 0)
-        missed[j] += (miss.error.col(j).squaredNorm() / unit - miss.variance.noise[j] / miss.repetitions) / m;
+  for (const auto& target : misses) {
+    const double m = static_cast<double>(misses.size() * target.size());
+    for (const auto& miss : target) {
+      for (Eigen::Index j = 0; j < missed.size(); ++j) {
+        const double unit = miss.variance.unit.col(j).sum();
+        if (unit > 0)
+          missed[j] += (miss.error.col(j).squaredNorm() / unit - miss.variance.noise[j] / miss.repetitions) / m;
+      }
+      latent += miss.variance.latent / m;
     }
-    latent += miss.variance.latent / m;
   }
   return missed.cwiseMax(latent);
 }
@@ -102,11 +114,59 @@ Samples of_noise(const PositionVariance& variance, double repetitions) {
   return variance.unit * (variance.noise / repetitions).asDiagonal();
 }
 
-/// What the factors multiply the root of, T x D [m^2].
+/// What the squared factors multiply, T x D [m^2].
 Samples of_intention(const PositionVariance& variance, const Calibration& calibration) {
   Samples total = variance.of_mean(calibration.target_variance, infinite);
   total.rowwise() += calibration.reproduction.array().square().matrix().transpose();
   return total;
+}
+
+/// Squares of what was missed on one target beside the variances that have to hold them, all phase_count - 2 x D: both
+/// ends are given to the motion, so they say nothing [m^2].
+struct Scored {
+  Samples squares, intention, noise;
+};
+
+Scored scored(const Miss& miss, const Calibration& calibration) {
+  const auto inner = [](const Samples& all) -> Samples { return all.middleRows(1, phase_count - 2); };
+  return {inner(miss.error.cwiseAbs2()), inner(of_intention(miss.variance, calibration)).cwiseMax(1e-24),
+          inner(of_noise(miss.variance, miss.repetitions))};
+}
+
+void set_factors(Calibration& calibration, const std::vector<std::vector<Miss>>& misses) {
+  std::vector<std::vector<Scored>> targets;
+  for (const auto& target : misses) {
+    targets.emplace_back();
+    for (const auto& miss : target) targets.back().push_back(scored(miss, calibration));
+  }
+  const auto& levels = nominal_levels();
+  calibration.levels = Eigen::Map<const Vector>(levels.data(), static_cast<Eigen::Index>(levels.size()));
+  calibration.pointwise = calibration.path = Vector::Zero(calibration.levels.size());
+  for (Eigen::Index i = 0; i < calibration.levels.size(); ++i) {
+    const double level = calibration.levels[i];
+    const double q = student_t_quantile((1 + level) / 2, infinite);
+    std::vector<double> all, greatest;
+    for (const auto& target : targets) {
+      for (const auto& one : target) {
+        const Samples ratio = ((one.squares - q * q * one.noise).array().max(0.0) / one.intention.array()).sqrt();
+        all.insert(all.end(), ratio.data(), ratio.data() + ratio.size());
+      }
+    }
+    std::sort(all.begin(), all.end());
+    const double pointwise = std::max(least_factor * q, quantile(all, level));
+    for (const auto& target : targets) {
+      greatest.push_back(0);
+      for (const auto& one : target) {
+        const Samples ratio = (one.squares.array() / (one.intention + std::pow(q / pointwise, 2) * one.noise).array());
+        greatest.back() = std::max(greatest.back(), std::sqrt(ratio.maxCoeff()));
+      }
+    }
+    std::sort(greatest.begin(), greatest.end());
+    const double degrees = static_cast<double>(targets.size()) - 1;
+    const double axes = static_cast<double>(calibration.target_variance.size());
+    calibration.pointwise[i] = few_values(axes * degrees, level) * pointwise;
+    calibration.path[i] = few_values(degrees, level) * conformal_quantile(greatest, level);
+  }
 }
 
 double factor(const Calibration& calibration, BandKind kind, double level) {
@@ -122,6 +182,11 @@ double factor(const Calibration& calibration, BandKind kind, double level) {
 }
 
 }  // namespace
+
+const std::vector<double>& nominal_levels() {
+  static const std::vector<double> levels = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
+  return levels;
+}
 
 Samples PositionVariance::of_mean(const Vector& extra, double repetitions) const {
   return unit * (latent + extra + noise / repetitions).asDiagonal();
@@ -183,12 +248,14 @@ std::optional<Calibration> calibrate(const Skill& skill, const std::vector<Skill
   SkillOptions knowing = searching;
   knowing.hyperparameters = &skill;
   const Matrix R = response_matrix(rows.front().primitive.settings, 1.0, linspace(0, 1, phase_count));
-  std::vector<Miss> misses(groups.size());
+  std::vector<std::vector<Miss>> misses(groups.size());
   parallel_for(groups.size(), options.jobs, [&](std::size_t g) {
     const auto rest = without(rows, groups[g]);
     const SkillPredictor searched(train_skill(skill.columns, rest, searching));
     const SkillPredictor known(train_skill(skill.columns, rest, knowing));
-    misses[g] = miss(searched, known, rows, groups[g], R);
+    for (const auto& repeated : repetitions_in(rows, groups[g])) {
+      misses[g].push_back(miss(searched, known, rows, repeated, R));
+    }
   });
 
   Calibration calibration;
@@ -199,27 +266,7 @@ std::optional<Calibration> calibrate(const Skill& skill, const std::vector<Skill
     calibration.reproduction += row.primitive.rmse.cwiseAbs2() / static_cast<double>(rows.size());
   calibration.reproduction = calibration.reproduction.cwiseSqrt();
 
-  std::vector<double> all, greatest;
-  for (const auto& miss : misses) {
-    const Samples variance = of_intention(miss.variance, calibration) + of_noise(miss.variance, miss.repetitions);
-    // Both ends are given to the motion, so they say nothing.
-    const Samples ratio =
-        (miss.error.cwiseAbs().array() / variance.array().max(1e-24).sqrt()).middleRows(1, phase_count - 2);
-    all.insert(all.end(), ratio.data(), ratio.data() + ratio.size());
-    greatest.push_back(ratio.maxCoeff());
-  }
-  std::sort(all.begin(), all.end());
-  std::sort(greatest.begin(), greatest.end());
-  calibration.levels.resize(11);
-  calibration.levels << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99;
-  calibration.pointwise.resize(11);
-  calibration.path.resize(11);
-  for (Eigen::Index i = 0; i < calibration.levels.size(); ++i) {
-    const double level = calibration.levels[i];
-    const double few = few_targets(groups.size(), level);
-    calibration.pointwise[i] = few * quantile(all, level);
-    calibration.path[i] = few * conformal_quantile(greatest, level);
-  }
+  set_factors(calibration, misses);
   return calibration;
 }
 

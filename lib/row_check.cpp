@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <iterator>
 
 #include "lfdtools/linalg.hpp"
 
@@ -29,10 +30,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// How far start and goal of each row are from the medians of its group, n [m]; 0 in groups of one or two.
-Vector distances_of_ends(const std::vector<SkillRow>& rows, const std::vector<std::vector<std::size_t>>& groups) {
-  Vector distances = Vector::Zero(static_cast<Eigen::Index>(rows.size()));
-  for (const auto& group : groups) {
+/// How far start and goal of each row are from the medians of its repetitions, n [m]; -1 of fewer than three.
+Vector distances_of_ends(const std::vector<SkillRow>& rows) {
+  Vector distances = Vector::Constant(static_cast<Eigen::Index>(rows.size()), -1);
+  for (const auto& group : repetition_groups(labels_of(rows))) {
     if (group.size() < 3) continue;
     const Eigen::Index D = rows.front().primitive.dimensions();
     Matrix ends(static_cast<Eigen::Index>(group.size()), 2 * D);
@@ -46,9 +47,13 @@ Vector distances_of_ends(const std::vector<SkillRow>& rows, const std::vector<st
   return distances;
 }
 
+/// @param distances  negative: not known
 std::vector<Outlier> far_over_median(const Vector& distances, double limit) {
+  std::vector<double> known;
+  std::copy_if(distances.begin(), distances.end(), std::back_inserter(known), [](double d) { return d >= 0; });
+  if (known.empty()) return {};
   // Where most rows agree to the last digit any other is infinitely far.
-  const double middle = std::max(median({distances.begin(), distances.end()}), 1e-300);
+  const double middle = std::max(median(std::move(known)), 1e-300);
   std::vector<Outlier> far;
   for (Eigen::Index i = 0; i < distances.size(); ++i) {
     if (distances[i] > limit * middle) far.push_back({static_cast<std::size_t>(i), distances[i] / middle});
@@ -89,7 +94,7 @@ std::vector<Outlier> outlying_rows(const Skill& skill, const std::vector<SkillRo
   constexpr double smallest = 0.1;  // [m]
   if (rows.size() < 4) return {};
   const auto groups = target_groups(skill.rows);
-  const Vector ends = distances_of_ends(rows, groups);
+  const Vector ends = distances_of_ends(rows);
   std::vector<Outlier> outliers;
   for (const auto& outlier : far_over_median(ends, limit)) {
     if (ends[static_cast<Eigen::Index>(outlier.row)] > smallest) outliers.push_back({outlier.row, outlier.ratio, true});

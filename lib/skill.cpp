@@ -18,16 +18,13 @@ double beyond(const Eigen::Ref<const Vector>& values, double x) {
   return std::max(low - margin - x, x - high - margin);
 }
 
-}  // namespace
-
-std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& rows) {
+/// Positions of the rows that are the same as the first of their group.
+template <typename Same>
+std::vector<std::vector<std::size_t>> grouped(const std::vector<Labels>& rows, const Same& same) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto same = [&](const auto& group) {
-      const Labels& first = rows[group.front()];
-      return first.target && first.target == rows[i].target && first.teacher == rows[i].teacher;
-    };
-    const auto found = std::find_if(groups.begin(), groups.end(), same);
+    const auto found = std::find_if(groups.begin(), groups.end(),
+                                    [&](const auto& group) { return same(rows[group.front()], rows[i]); });
     if (found == groups.end()) {
       groups.push_back({i});
     } else {
@@ -35,6 +32,18 @@ std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& r
     }
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> target_groups(const std::vector<Labels>& rows) {
+  return grouped(rows, [](const Labels& a, const Labels& b) { return a.target && a.target == b.target; });
+}
+
+std::vector<std::vector<std::size_t>> repetition_groups(const std::vector<Labels>& rows) {
+  return grouped(rows, [](const Labels& a, const Labels& b) {
+    return a.target && a.target == b.target && a.teacher == b.teacher;
+  });
 }
 
 std::vector<SkillRow> without(const std::vector<SkillRow>& rows, const std::vector<std::size_t>& left_out) {

@@ -1,3 +1,5 @@
+#include "lfdtools/skill_train.hpp"
+
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -7,7 +9,7 @@
 
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/error.hpp"
-#include "lfdtools/skill.hpp"
+#include "lfdtools/metrics.hpp"
 #include "lfdtools/tempo.hpp"
 
 namespace lfd {
@@ -159,6 +161,11 @@ KnownMean known_mean(const SkillOptions& options, const DmpSettings& settings, c
   return mean;
 }
 
+/// What rows count for in the evidence: a target of a teacher once.
+double evidence_power(const std::vector<SkillRow>& rows) {
+  return static_cast<double>(repetition_groups(labels_of(rows)).size()) / static_cast<double>(rows.size());
+}
+
 /// The line through the durations, with a proper prior: the posterior mean of constant + linear kernel terms is a line,
 /// so its values at 0 and at the unit vectors give the coefficients.
 DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptions& options) {
@@ -175,6 +182,7 @@ DurationModel duration_model(const std::vector<SkillRow>& rows, const SkillOptio
   process.kernel.terms.resize(2);  // constant, linear
   process.starts = 1;
   process.seed = options.seed;
+  process.evidence_power = evidence_power(rows);
   const MvgpPredictor line(train_mvgp(X, tau, {}, process));
   model.mean = line.predict(Vector::Zero(X.cols())).mean[0];
   model.coefficients.resize(X.cols());
@@ -217,11 +225,6 @@ Skill untrained(const std::vector<std::string>& columns, const std::vector<Skill
   return skill;
 }
 
-/// What rows count for in the evidence: a target once.
-double evidence_power(const Skill& skill) {
-  return static_cast<double>(target_groups(skill.rows).size()) / static_cast<double>(skill.rows.size());
-}
-
 void train_processes(Skill& skill, const std::vector<SkillRow>& rows, const SkillOptions& options) {
   const Eigen::Index n = static_cast<Eigen::Index>(rows.size());
   const Eigen::Index D = rows.front().primitive.dimensions();
@@ -238,7 +241,7 @@ void train_processes(Skill& skill, const std::vector<SkillRow>& rows, const Skil
       X.row(i) = inputs_of(model, reach).transpose();
     }
     MvgpOptions process = process_options(options, model, static_cast<int>(D));
-    if (!options.paper) process.evidence_power = evidence_power(skill);
+    if (!options.paper) process.evidence_power = evidence_power(rows);
     if (options.hyperparameters != nullptr) {
       const MvgpModel& known = options.hyperparameters->models.at(first).process;
       process.kernel = known.kernel;
@@ -262,12 +265,12 @@ void train_processes(Skill& skill, const std::vector<SkillRow>& rows, const Skil
 }  // namespace
 
 Matrix trajectory_metric(const DmpSettings& settings) {
-  constexpr Eigen::Index samples = 200;
   const Eigen::Index N = settings.bases();
-  const Matrix R = response_matrix(settings, 1.0, linspace(0, 1, samples)) / std::sqrt(static_cast<double>(samples));
+  const Matrix R =
+      response_matrix(settings, 1.0, linspace(0, 1, phase_count)) / std::sqrt(static_cast<double>(phase_count));
   const double largest = Eigen::JacobiSVD<Matrix>(R).singularValues()[0];
   // QR of R over the floor: A A^T without squaring the condition of R.
-  Matrix stacked(samples + N, N);
+  Matrix stacked(phase_count + N, N);
   stacked << R, 1e-6 * largest * Matrix::Identity(N, N);
   Matrix upper = Eigen::HouseholderQR<Matrix>(stacked).matrixQR().topRows(N).triangularView<Eigen::Upper>();
   for (Eigen::Index i = 0; i < N; ++i) {
@@ -303,6 +306,7 @@ SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::ve
   const auto missed = [&](SkillKernel kernel) {
     SkillOptions one = options;
     one.kernel = kernel;
+    one.tempo = SkillTempo::own;
     one.starts = 1;
     const Skill skill = train_skill(columns, rows, one);
     const Matrix residuals = left_out_residuals(skill);

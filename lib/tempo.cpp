@@ -72,7 +72,7 @@ TargetTempo target_tempo(const Matrix& metric, const std::vector<SkillRow>& rows
 }  // namespace
 
 std::vector<SkillRow> with_shared_tempo(const Skill& skill, std::vector<SkillRow> rows) {
-  const auto groups = target_groups(skill.rows);
+  const auto groups = repetition_groups(skill.rows);
   if (groups.size() < 3 || groups.size() == rows.size()) return rows;
   const Matrix residuals = left_out_residuals(skill);
   const Matrix metric = metric_of(skill);

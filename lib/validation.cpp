@@ -6,7 +6,9 @@
 #include <ctime>
 #include <limits>
 #include <map>
+#include <utility>
 
+#include "lfdtools/calibration.hpp"
 #include "lfdtools/dtw.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/methods.hpp"
@@ -24,11 +26,24 @@ struct Split {
   std::vector<std::size_t> training;
 };
 
-std::vector<Split> splits(std::size_t targets, const std::vector<int>& folds) {
+/// Who is left out together: the members of a fold, or where there are no folds all that teachers showed of a target.
+std::vector<std::vector<std::size_t>> left_out_together(const std::vector<TargetDemonstrations>& targets,
+                                                        const std::vector<int>& folds) {
+  if (folds.empty()) {
+    std::vector<Labels> labels;
+    for (const auto& target : targets) labels.push_back(target.labels);
+    return target_groups(labels);
+  }
   std::map<int, std::vector<std::size_t>> members;  // by fold
-  for (std::size_t i = 0; i < targets; ++i) members[folds.empty() ? static_cast<int>(i) : folds[i]].push_back(i);
+  for (std::size_t i = 0; i < targets.size(); ++i) members[folds[i]].push_back(i);
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [fold, group] : members) groups.push_back(std::move(group));
+  return groups;
+}
+
+std::vector<Split> splits(const std::vector<std::vector<std::size_t>>& groups, std::size_t targets) {
   std::vector<Split> result;
-  for (const auto& [fold, left_out] : members) {
+  for (const auto& left_out : groups) {
     Split split{left_out, {}};
     for (std::size_t i = 0; i < targets; ++i) {
       if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) split.training.push_back(i);
@@ -186,11 +201,6 @@ Validation judge(const std::vector<TargetDemonstrations>& targets, const std::ve
 
 }  // namespace
 
-const std::vector<double>& nominal_levels() {
-  static const std::vector<double> levels = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
-  return levels;
-}
-
 BandScore band_score(const Predicted& predicted, double level, const Samples& mean_path) {
   // Both ends are given to the method, so they are no test of its band.
   const Eigen::Index inner = mean_path.rows() - 2;
@@ -208,7 +218,7 @@ Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets
     throw DataError("validation.too_few_targets",
                     fmt::format("leaving one target out needs at least three targets, not {}", targets.size()));
   }
-  return judge(targets, splits(targets.size(), options.folds), options);
+  return judge(targets, splits(left_out_together(targets, options.folds), targets.size()), options);
 }
 
 Validation judge_on_test_targets(const std::vector<TargetDemonstrations>& targets,

@@ -99,7 +99,19 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
   options.starts = 1;
   SkillOptions knowing = options;
   knowing.hyperparameters = &skill;
-  std::vector<double> greatest;
+  const auto quantile_at = [](std::vector<double> values, double share) {
+    std::sort(values.begin(), values.end());
+    const double position = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(position);
+    return values[below] + (position - std::floor(position)) * (values[below + 1] - values[below]);
+  };
+  // Levels 0.5 and 0.99: normal quantile, t over z with four degrees of freedom, from tables.
+  const double q[2] = {0.674490, 2.575829};
+  const double few[2] = {0.740697 / 0.674490, 4.604095 / 2.575829};
+  const double few_of_both_axes[2] = {0.706387 / 0.674490, 3.355387 / 2.575829};  // eight degrees of freedom
+  const int place[2] = {4, 10};
+  std::vector<double> scores[2];
+  std::vector<double> greatest[2];
   Vector effect = Vector::Zero(2);
   Vector latent = Vector::Zero(2);
   for (int pass = 0; pass < 2; ++pass) {  // the second uses the effect that the first found
@@ -129,17 +141,34 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
         latent += variance.latent / 5;
         continue;
       }
-      Samples sd = variance.of_mean(effect.cwiseMax(latent), 4);
-      for (int j = 0; j < 2; ++j) sd.col(j).array() += calibration->reproduction[j] * calibration->reproduction[j];
-      greatest.push_back(((predicted - mean).cwiseAbs().array() / sd.array().sqrt()).middleRows(1, 198).maxCoeff());
+      for (const int l : {0, 1}) {
+        double most = 0;
+        for (int k = 1; k < 199; ++k) {
+          for (int j = 0; j < 2; ++j) {
+            const double intention = variance.unit(k, j) * (variance.latent[j] + std::max(effect[j], latent[j])) +
+                                     calibration->reproduction[j] * calibration->reproduction[j];
+            const double noise = variance.unit(k, j) * variance.noise[j] / 4;
+            const double missed = std::pow(predicted(k, j) - mean(k, j), 2);
+            scores[l].push_back(std::sqrt(std::max(0.0, missed - q[l] * q[l] * noise) / intention));
+            const double factor = calibration->pointwise[place[l]] / few_of_both_axes[l];
+            most = std::max(most, std::sqrt(missed / (intention + std::pow(q[l] / factor, 2) * noise)));
+          }
+        }
+        greatest[l].push_back(most);
+      }
     }
   }
   CHECK((calibration->target_variance - effect.cwiseMax(latent)).norm() < 1e-6 * effect.norm());
-  std::sort(greatest.begin(), greatest.end());
-  // Level 0.5: rank ceil(6 * 0.5) = 3; level 0.99: rank 6 is over 5. t over z with four degrees of freedom, from
-  // tables.
-  CHECK(calibration->path[4] == Approx(greatest[2] * 0.740697 / 0.674490).epsilon(1e-5));
-  CHECK(calibration->path[10] == Approx(greatest[4] * 4.604095 / 2.575829).epsilon(1e-5));
+  for (const int l : {0, 1}) {
+    const double level = calibration->levels[place[l]];
+    const double least = 0.5 * q[l];
+    CHECK(calibration->pointwise[place[l]] ==
+          Approx(few_of_both_axes[l] * std::max(least, quantile_at(scores[l], level))).epsilon(1e-4));
+    std::sort(greatest[l].begin(), greatest[l].end());
+  }
+  // Level 0.5: rank ceil(6 * 0.5) = 3; level 0.99: rank 6 is over 5.
+  CHECK(calibration->path[4] == Approx(greatest[0][2] * few[0]).epsilon(1e-4));
+  CHECK(calibration->path[10] == Approx(greatest[1][4] * few[1]).epsilon(1e-4));
 }
 
 TEST_CASE("bands hold what they promise on new targets of the same kind") {
@@ -170,10 +199,34 @@ TEST_CASE("bands hold what they promise on new targets of the same kind") {
     samples += inside(band(predictor, change, phases, BandKind::pointwise)).mean() / trials;
     paths += inside(band(predictor, change, phases, BandKind::path)).minCoeff() / trials;
   }
-  INFO("pointwise " << samples << ", paths " << paths );
+  INFO("pointwise " << samples << ", paths " << paths);
   CHECK(samples > 0.88);
   CHECK(samples < 1);
   CHECK(paths > 0.7);  // 6 / 7 but for chance: two sd of thirty trials
+}
+
+TEST_CASE("a target that two teachers showed is left out with the rows of both") {
+  Random random(6);
+  auto rows = demonstrations(6, 3, 0.03, 0.001, random);
+  SkillOptions options;
+  options.starts = 1;
+  // Widest half-width of a skill's band on the way to a new goal [m].
+  const auto width = [&options](const std::vector<SkillRow>& of) {
+    Skill skill = train_skill(xy, of, options);
+    skill.calibration = calibrate(skill, of, options);
+    REQUIRE(skill.calibration);
+    CHECK(skill.calibration->targets == 6);
+    return band(SkillPredictor(skill), change_to(0.55), phases, BandKind::pointwise).maxCoeff();
+  };
+  const double alone = width(rows);
+  for (std::size_t i = 0; i < 18; ++i) {
+    rows[i].labels.teacher = "anna";
+    rows.push_back(rows[i]);
+    rows.back().labels.teacher = "bert";
+    rows.back().primitive.weights *= 1.001;
+  }
+  // The rows of bert would tell nearly all of what sets a target of anna apart.
+  CHECK(width(rows) > 0.7 * alone);
 }
 
 TEST_CASE("without a calibration the band is the process's own") {

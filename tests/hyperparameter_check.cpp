@@ -86,7 +86,8 @@ Found check_skill(const Skill& skill, int starts) {
   const auto all = parameters(model);
   const auto count = static_cast<Eigen::Index>(all.size());
   Evidence evidence(model.X, principal_blocks(skill), model.kernel, {});
-  const double power = static_cast<double>(target_groups(skill.rows).size()) / static_cast<double>(skill.rows.size());
+  const double power =
+      static_cast<double>(repetition_groups(skill.rows).size()) / static_cast<double>(skill.rows.size());
   const Objective objective = [&](const Vector& theta, Vector& gradient) {
     double value = power * evidence(theta, &gradient);
     gradient *= power;

@@ -8,6 +8,7 @@
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/posterior.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/skill_train.hpp"
 
 namespace lfd {
 

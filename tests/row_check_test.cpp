@@ -5,6 +5,7 @@
 
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/skill_train.hpp"
 
 using namespace lfd;
 

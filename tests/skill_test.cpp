@@ -7,6 +7,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/metrics.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/skill_train.hpp"
 #include "lfdtools/tempo.hpp"
 #include "lfdtools/validation.hpp"
 
@@ -260,7 +261,7 @@ TEST_CASE("what is left of a target that is left out is what a skill without it 
 
 TEST_CASE("of sum and additive the kernel is chosen that misses less on targets left out") {
   int additive = 0;
-  for (const std::uint64_t seed : {1, 3}) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Random random(seed);
     const auto rows = rows_by_one_input(random);
     double missed[2] = {};
@@ -268,10 +269,9 @@ TEST_CASE("of sum and additive the kernel is chosen that misses less on targets 
       SkillOptions options;
       options.kernel = kernel;
       options.starts = 1;
-      const Skill skill = train_skill({"x", "y"}, rows, options);
       options.tempo = SkillTempo::own;
-      const auto shared = with_shared_tempo(train_skill({"x", "y"}, rows, options), rows);
-      const Matrix brute = misses_by_retraining(skill, shared, options);
+      const Skill skill = train_skill({"x", "y"}, rows, options);
+      const Matrix brute = misses_by_retraining(skill, rows, options);
       for (const auto& group : target_groups(skill.rows)) {
         missed[kernel == SkillKernel::sum] += brute(group, Eigen::all).colwise().mean().squaredNorm();
       }
@@ -280,7 +280,8 @@ TEST_CASE("of sum and additive the kernel is chosen that misses less on targets 
     CHECK(choose_kernel({"x", "y"}, rows, {}) == (missed[0] < missed[1] ? SkillKernel::additive : SkillKernel::sum));
     additive += missed[0] < missed[1] ? 1 : 0;
   }
-  CHECK(additive == 1);  // both choices are tried
+  CHECK(additive > 0);  // both choices are tried
+  CHECK(additive < 4);
 }
 
 TEST_CASE("rows that make no skill are refused") {

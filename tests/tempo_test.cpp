@@ -7,6 +7,7 @@
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/skill_train.hpp"
 
 using namespace lfd;
 

@@ -5,7 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "lfdtools/skill.hpp"
+#include "lfdtools/metrics.hpp"
+#include "lfdtools/skill_train.hpp"
 
 namespace lfd {
 
@@ -23,6 +24,9 @@ struct PositionVariance {
 /// @param phases  T, times over the duration
 [[nodiscard]] PositionVariance position_variance(const SkillPredictor& predictor, const Reach& reach,
                                                  const Vector& phases);
+
+/// Shares at which bands are calibrated and judged: 0.1, 0.2, ... 0.9, 0.95, 0.99.
+[[nodiscard]] const std::vector<double>& nominal_levels();
 
 /// Which samples a band promises to hold.
 enum class BandKind {
@@ -49,11 +53,16 @@ enum class BandKind {
 /// (sum of squared errors) / (sum of unit variances) - noise / rows, but at least the mean of the latent variances. So
 /// at least half of the variance does not depend on the target: how latent variance rises from a target's neighbourhood
 /// is the least certain part of a process, and a factor measured where targets are left out would be too small between
-/// them. The factors are quantiles of
-/// |error| / sd: `pointwise` over all samples and axes, `path` over the targets' greatest, with the rank
-/// ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability m / (m + 1)
-/// when that rank is over m. Both times t / z, the quantiles of Student-t with m - 1 degrees of freedom and of the
-/// normal distribution, because the sd was itself measured on m targets.
+/// them.
+///
+/// A factor is the least with which band() holds what was missed on the mean of the rows: `pointwise` on a share of all
+/// samples and axes, but at least half a normal quantile (so few targets do not show that the process is over twice too
+/// careful); `path` on whole targets, with the rank ceil((m + 1) level) of split conformal prediction, so that a new
+/// whole path is inside with probability m / (m + 1) when that rank is over m. All times t / z, the quantiles of
+/// Student-t and of the normal distribution, because the sd was itself measured on m targets: with D (m - 1) degrees of
+/// freedom `pointwise`, of each axis by itself, and m - 1 `path`, of whole targets.
+///
+/// Where several teachers reach one target, all of their rows are left out together.
 /// @return empty with fewer than three targets that differ
 /// @throws those of train_skill
 /// @param rows, options  those that the skill was trained with

@@ -7,12 +7,10 @@
 
 #include "lfdtools/alignment.hpp"
 #include "lfdtools/dmp.hpp"
+#include "lfdtools/metrics.hpp"
 #include "lfdtools/trajectory.hpp"
 
 namespace lfd {
-
-/// Methods are judged on this many equally spaced phases s in [0, 1]; paths below have as many rows.
-inline constexpr Eigen::Index phase_count = 200;
 
 /// The demonstrations of one target, as recorded.
 struct TargetDemonstrations {

@@ -6,6 +6,9 @@
 
 namespace lfd {
 
+/// Motions are compared, and methods judged, at this many equally spaced phases s in [0, 1].
+inline constexpr Eigen::Index phase_count = 200;
+
 /// The path at n equally spaced phases s in [0, 1] of the given duration, n x D (cubic spline; after the last sample
 /// the motion rests). Phases are linear in time, so nothing is aligned.
 /// @param duration  seconds that s = 1 stands for; 0: the whole trajectory

@@ -9,23 +9,23 @@
 
 namespace lfd {
 
-/// Rows that are, number for number, an earlier row of their target and teacher. Such a copy says that a demonstration
+/// Rows that are, number for number, an earlier row of their target. Such a copy says that a demonstration
 /// has no noise at all.
 [[nodiscard]] std::vector<std::size_t> repeated_rows(const std::vector<SkillRow>& rows);
 
 /// A row that is far from the others.
 struct Outlier {
   std::size_t row = 0;
-  double ratio = 0;   ///< how far, over the median of all rows
+  double ratio = 0;   ///< how far, over the median of the rows judged
   bool ends = false;  ///< far by its start and goal, not by its motion
 };
 
 /// Rows over `limit` times as far from the others as the median row. None under four rows, of which the median says too
 /// little.
 ///
-/// First by start and goal: the distance from their medians over the rows of the target, of three at least, if it is
-/// over 100 mm too. A row far off in its inputs is a target of its own to the processes, which miss its neighbours for
-/// it, so that where there is one, motions are not judged.
+/// First by start and goal: the distance from their medians over the repetitions of the target by its teacher, of three
+/// at least, if it is over 100 mm too. A row far off in its inputs is a target of its own to the processes, which miss
+/// its neighbours for it, so that where there is one, motions are not judged.
 ///
 /// Else by what a row misses: its left-out residual (left_out_residuals, norm over all signals) over the standard
 /// deviation that the processes expect of it, for a target at the edge may be missed by more than one between others.

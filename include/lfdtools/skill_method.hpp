@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lfdtools/prediction.hpp"
-#include "lfdtools/skill.hpp"
+#include "lfdtools/skill_train.hpp"
 
 namespace lfd {
 

@@ -36,7 +36,7 @@ struct ValidationScore {
   double dtw = 0;                   ///< mean distance along the cheapest DTW path to the mean path [m]
   double outside = 0;               ///< greatest depth beyond the region that neighbouring demonstrations swept [m]
   std::optional<BandScore> band95;  ///< empty: the method has no band
-  std::vector<BandScore> bands;     ///< at nominal_levels(), or empty
+  std::vector<BandScore> bands;     ///< at nominal_levels() (calibration.hpp), or empty
 };
 
 /// Processor time that a method took to learn and to predict, over all folds [s]; without the preparation of rows.
@@ -53,13 +53,10 @@ struct Validation {
   int lifted_gates = 0;
 };
 
-/// Nominal levels of ValidationScore::bands: 0.1, 0.2, ... 0.9, 0.95, 0.99.
-[[nodiscard]] const std::vector<double>& nominal_levels();
-
-/// Leaves every target out once, alone or with the others of its fold. A method learns once a fold and is told of the
-/// left-out targets their mean start and mean goal, the query, and nothing else. `outside` looks at deviations from the
-/// straight minimum-jerk line between start and goal: at each phase the box that the deviations of the demonstrations
-/// of the four nearest training targets span.
+/// Leaves every target out once, by all of its teachers, alone or with the others of its fold. A method learns once a
+/// fold and is told of the left-out targets their mean start and mean goal, the query, and nothing else. `outside`
+/// looks at deviations from the straight minimum-jerk line between start and goal: at each phase the box that the
+/// deviations of the demonstrations of the four nearest training targets span.
 /// @throws DataError [validation.too_few_targets] under three targets, or where a fold leaves under two to learn from;
 ///         UsageError [validation.method]; those of the stages, with method and fold named
 [[nodiscard]] Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets,

@@ -94,6 +94,11 @@ class Answer {
       run_.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start",
                                        name, 1e3 * skill.start_spread));
     }
+    if (sees_teachers(skill) && goal.labels.teacher && predictor_.reach(goal).teacher < 0) {
+      run_.messages().warning("generate.unknown_teacher",
+                              name + "no demonstration is of teacher " + *goal.labels.teacher +
+                                  ": the motion is what all teachers share, and its sd that of somebody unknown");
+    }
     const double excess = region_excess(skill, predictor_.reach(goal));
     if (excess > 0) {
       run_.refuse(

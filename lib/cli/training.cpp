@@ -77,19 +77,26 @@ Skill learn(const std::vector<std::string>& columns, std::vector<SkillRow>& rows
     return std::pair(train_skill(columns, rows, options), options);
   };
   auto [skill, options] = train();
-  const auto ways = request.options.paper ? std::optional<Ways>() : two_ways(skill, rows);
-  if (!ways && request.way) throw DataError("skill.one_way", "the demonstrations go one way alone");
-  if (ways && request.way) {
-    rows = rows_of_way(rows, *ways, static_cast<int>(*request.way) - 1);
-    std::tie(skill, options) = train();
-  } else if (ways && request.two_ways_refused) {
-    run.refuse("two_ways", describe(*ways) + "; --way 1 or 2 learns one of them");
-  }
+  bool way_sought = !request.options.paper;
   for (;;) {
+    // Before outliers, for the fewer of two ways may look like some; and after, for some may hide them.
+    const auto ways = way_sought ? two_ways(skill, rows) : std::optional<Ways>();
+    if (ways) way_sought = false;
+    if (ways && request.way) {
+      rows = rows_of_way(rows, *ways, static_cast<int>(*request.way) - 1);
+      std::tie(skill, options) = train();
+    } else if (ways && request.two_ways_refused) {
+      run.refuse("two_ways", describe(*ways) + "; --way 1 or 2 learns one of them");
+    } else if (ways) {
+      run.messages().warning("skill.two_ways", describe(*ways) + ": what follows is of both together");
+    }
     const auto outliers = warn_of_outliers(skill, rows, request.leave_out_outliers, run.messages());
     if (!request.leave_out_outliers || outliers.empty()) break;
     rows = without(rows, outliers);
     std::tie(skill, options) = train();
+  }
+  if (request.way && (way_sought || request.options.paper)) {
+    throw DataError("skill.one_way", "the demonstrations go one way alone");
   }
   warn_of_coinciding(rows, run.messages());
   if (request.calibrated) {
