@@ -187,20 +187,27 @@ std::size_t way_of(const Experiment& e, const Random& stream) {
 }
 
 Trajectory demonstrate(const Experiment& e, const Hole& hole, const Random& stream) {
-  const TeacherNoise& noise = e.noise;
-  const double mean = e.duration_mean;
+  const std::size_t way = way_of(e, stream);
+  const auto meant = [&](const Vector& phases) { return intention_unchecked(e, hole.position, phases, way); };
+  return perform(meant, e.duration_mean, e.rate, e.noise, stream);
+}
+
+}  // namespace
+
+Trajectory perform(const std::function<Samples(const Vector&)>& meant, double mean, double rate,
+                   const TeacherNoise& noise, const Random& stream) {
   const double duration =
       std::clamp(mean + noise.duration_sd * stream.split(duration_stream).normal(), mean / 3, 3 * mean);
-  const Index T = std::max<Index>(std::lround(duration * e.rate), 2) + 1;
+  const Index T = std::max<Index>(std::lround(duration * rate), 2) + 1;
   const Vector s = linspace(0, 1, T);
   const double c = std::clamp(noise.tempo_sd * stream.split(tempo_stream).normal(), -latest_tempo, latest_tempo);
   Vector phase = (s.array() + c * (pi * s.array()).sin()).min(1.0).max(0.0);
   phase[T - 1] = 1;  // sin(pi) rounds to a little more than zero
-  Trajectory out{s * (static_cast<double>(T - 1) / e.rate),
-                 intention_unchecked(e, hole.position, phase, way_of(e, stream))};
+  Trajectory out{s * (static_cast<double>(T - 1) / rate), meant(phase)};
   Random wander = stream.split(wander_stream);
   Random tremor = stream.split(tremor_stream);
-  for (Index d = 0; d < e.start.size(); ++d) {
+  const Index D = out.positions.cols();
+  for (Index d = 0; d < D; ++d) {
     for (Index k = 0; k < noise.wander_sd.size(); ++k) {
       const double amplitude = noise.wander_sd[k] * wander.normal();
       const auto half_waves = static_cast<double>(k + 1);
@@ -208,12 +215,10 @@ Trajectory demonstrate(const Experiment& e, const Hole& hole, const Random& stre
     }
   }
   for (Index i = 1; i + 1 < T; ++i) {
-    for (Index d = 0; d < e.start.size(); ++d) out.positions(i, d) += noise.tremor_sd * tremor.normal();
+    for (Index d = 0; d < D; ++d) out.positions(i, d) += noise.tremor_sd * tremor.normal();
   }
   return out;
 }
-
-}  // namespace
 
 Vector TeacherNoise::default_wander() {
   return (Vector(2) << 0.006, 0.004).finished();

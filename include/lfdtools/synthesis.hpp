@@ -10,11 +10,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lfdtools/linalg.hpp"
+#include "lfdtools/random.hpp"
 #include "lfdtools/trajectory.hpp"
 
 namespace lfd {
@@ -84,6 +86,12 @@ struct TeacherNoise {
 
   [[nodiscard]] static Vector default_wander();  ///< 6 mm and 4 mm
 };
+
+/// One demonstration of a motion: what is meant, at phases that are early or late, with wander and tremor, for a
+/// duration about the mean.
+/// @param meant  positions at phases, n -> n x D [m]   @param mean  duration [s]   @param rate  [Hz]
+[[nodiscard]] Trajectory perform(const std::function<Samples(const Vector& phases)>& meant, double mean, double rate,
+                                 const TeacherNoise& noise, const Random& stream);
 
 /// Everything about an experiment.
 struct Experiment {
