@@ -121,15 +121,17 @@ Samples of_intention(const PositionVariance& variance, const Calibration& calibr
   return total;
 }
 
-/// Squares of what was missed on one target beside the variances that have to hold them, all phase_count - 2 x D: both
-/// ends are given to the motion, so they say nothing [m^2].
+/// Squares of what was missed on one target, with what its primitives miss of the recordings, beside the variances that
+/// have to hold them, all phase_count - 2 x D: both ends are given to the motion, so they say nothing [m^2].
 struct Scored {
   Samples squares, intention, noise;
 };
 
 Scored scored(const Miss& miss, const Calibration& calibration) {
   const auto inner = [](const Samples& all) -> Samples { return all.middleRows(1, phase_count - 2); };
-  return {inner(miss.error.cwiseAbs2()), inner(of_intention(miss.variance, calibration)).cwiseMax(1e-24),
+  Samples squares = miss.error.cwiseAbs2();
+  squares.rowwise() += calibration.reproduction.array().square().matrix().transpose();
+  return {inner(squares), inner(of_intention(miss.variance, calibration)).cwiseMax(1e-24),
           inner(of_noise(miss.variance, miss.repetitions))};
 }
 
@@ -142,6 +144,9 @@ void set_factors(Calibration& calibration, const std::vector<std::vector<Miss>>&
   const auto& levels = nominal_levels();
   calibration.levels = Eigen::Map<const Vector>(levels.data(), static_cast<Eigen::Index>(levels.size()));
   calibration.pointwise = calibration.path = Vector::Zero(calibration.levels.size());
+  const double degrees = static_cast<double>(targets.size()) - 1;
+  const double axes = static_cast<double>(calibration.target_variance.size());
+  double pointwise = 0, path = 0;  // of the level before: bands of rising levels hold each other
   for (Eigen::Index i = 0; i < calibration.levels.size(); ++i) {
     const double level = calibration.levels[i];
     const double q = student_t_quantile((1 + level) / 2, infinite);
@@ -153,19 +158,18 @@ void set_factors(Calibration& calibration, const std::vector<std::vector<Miss>>&
       }
     }
     std::sort(all.begin(), all.end());
-    const double pointwise = std::max(least_factor * q, quantile(all, level));
+    pointwise = std::max({pointwise, least_factor * q, quantile(all, level)});
+    calibration.pointwise[i] = few_values(axes * degrees, level) * pointwise;
     for (const auto& target : targets) {
       greatest.push_back(0);
       for (const auto& one : target) {
-        const Samples ratio = (one.squares.array() / (one.intention + std::pow(q / pointwise, 2) * one.noise).array());
-        greatest.back() = std::max(greatest.back(), std::sqrt(ratio.maxCoeff()));
+        const Samples held = one.intention + std::pow(q / calibration.pointwise[i], 2) * one.noise;
+        greatest.back() = std::max(greatest.back(), std::sqrt((one.squares.array() / held.array()).maxCoeff()));
       }
     }
     std::sort(greatest.begin(), greatest.end());
-    const double degrees = static_cast<double>(targets.size()) - 1;
-    const double axes = static_cast<double>(calibration.target_variance.size());
-    calibration.pointwise[i] = few_values(axes * degrees, level) * pointwise;
-    calibration.path[i] = few_values(degrees, level) * conformal_quantile(greatest, level);
+    path = std::max({path, pointwise, conformal_quantile(greatest, level)});
+    calibration.path[i] = few_values(degrees, level) * path;
   }
 }
 

@@ -311,7 +311,7 @@ SkillKernel choose_kernel(const std::vector<std::string>& columns, const std::ve
     const Skill skill = train_skill(columns, rows, one);
     const Matrix residuals = left_out_residuals(skill);
     double sum = 0;
-    for (const auto& group : target_groups(skill.rows))
+    for (const auto& group : repetition_groups(skill.rows))
       sum += residuals(group, Eigen::all).colwise().mean().squaredNorm();
     return sum;
   };

@@ -214,9 +214,10 @@ BandScore band_score(const Predicted& predicted, double level, const Samples& me
 }
 
 Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets, const ValidationOptions& options) {
-  if (targets.size() < 3) {
+  if (left_out_together(targets, {}).size() < 3) {
     throw DataError("validation.too_few_targets",
-                    fmt::format("leaving one target out needs at least three targets, not {}", targets.size()));
+                    fmt::format("leaving one target out needs at least three targets, not {}",
+                                left_out_together(targets, {}).size()));
   }
   return judge(targets, splits(left_out_together(targets, options.folds), targets.size()), options);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lfdtools/dmp_fit.hpp"
@@ -105,13 +106,11 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
     const auto below = static_cast<std::size_t>(position);
     return values[below] + (position - std::floor(position)) * (values[below + 1] - values[below]);
   };
-  // Levels 0.5 and 0.99: normal quantile, t over z with four degrees of freedom, from tables.
-  const double q[2] = {0.674490, 2.575829};
-  const double few[2] = {0.740697 / 0.674490, 4.604095 / 2.575829};
-  const double few_of_both_axes[2] = {0.706387 / 0.674490, 3.355387 / 2.575829};  // eight degrees of freedom
-  const int place[2] = {4, 10};
-  std::vector<double> scores[2];
-  std::vector<double> greatest[2];
+  const auto levels = nominal_levels();
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::vector<double> q;
+  for (const double level : levels) q.push_back(student_t_quantile((1 + level) / 2, infinite));
+  std::vector<std::vector<double>> scores(levels.size()), greatest(levels.size());
   Vector effect = Vector::Zero(2);
   Vector latent = Vector::Zero(2);
   for (int pass = 0; pass < 2; ++pass) {  // the second uses the effect that the first found
@@ -141,16 +140,17 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
         latent += variance.latent / 5;
         continue;
       }
-      for (const int l : {0, 1}) {
+      for (std::size_t l = 0; l < levels.size(); ++l) {
         double most = 0;
         for (int k = 1; k < 199; ++k) {
           for (int j = 0; j < 2; ++j) {
             const double intention = variance.unit(k, j) * (variance.latent[j] + std::max(effect[j], latent[j])) +
                                      calibration->reproduction[j] * calibration->reproduction[j];
             const double noise = variance.unit(k, j) * variance.noise[j] / 4;
-            const double missed = std::pow(predicted(k, j) - mean(k, j), 2);
+            const double missed =
+                std::pow(predicted(k, j) - mean(k, j), 2) + calibration->reproduction[j] * calibration->reproduction[j];
             scores[l].push_back(std::sqrt(std::max(0.0, missed - q[l] * q[l] * noise) / intention));
-            const double factor = calibration->pointwise[place[l]] / few_of_both_axes[l];
+            const double factor = calibration->pointwise[static_cast<Eigen::Index>(l)];
             most = std::max(most, std::sqrt(missed / (intention + std::pow(q[l] / factor, 2) * noise)));
           }
         }
@@ -159,16 +159,20 @@ TEST_CASE("factors are the quantiles of what was missed on targets left out, mea
     }
   }
   CHECK((calibration->target_variance - effect.cwiseMax(latent)).norm() < 1e-6 * effect.norm());
-  for (const int l : {0, 1}) {
-    const double level = calibration->levels[place[l]];
-    const double least = 0.5 * q[l];
-    CHECK(calibration->pointwise[place[l]] ==
-          Approx(few_of_both_axes[l] * std::max(least, quantile_at(scores[l], level))).epsilon(1e-4));
+  double pointwise = 0, path = 0;
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const auto i = static_cast<Eigen::Index>(l);
+    CHECK(calibration->levels[i] == levels[l]);
+    // Four degrees of freedom of whole targets, eight of both axes.
+    const double few = student_t_quantile((1 + levels[l]) / 2, 4) / q[l];
+    const double few_of_both_axes = student_t_quantile((1 + levels[l]) / 2, 8) / q[l];
+    pointwise = std::max({pointwise, 0.5 * q[l], quantile_at(scores[l], levels[l])});
+    CHECK(calibration->pointwise[i] == Approx(few_of_both_axes * pointwise).epsilon(1e-6));
     std::sort(greatest[l].begin(), greatest[l].end());
+    const int rank = std::min(5, static_cast<int>(std::ceil(6 * levels[l])));
+    path = std::max({path, pointwise, greatest[l][static_cast<std::size_t>(rank - 1)]});
+    CHECK(calibration->path[i] == Approx(few * path).epsilon(1e-6));
   }
-  // Level 0.5: rank ceil(6 * 0.5) = 3; level 0.99: rank 6 is over 5.
-  CHECK(calibration->path[4] == Approx(greatest[0][2] * few[0]).epsilon(1e-4));
-  CHECK(calibration->path[10] == Approx(greatest[1][4] * few[1]).epsilon(1e-4));
 }
 
 TEST_CASE("bands hold what they promise on new targets of the same kind") {

@@ -44,7 +44,8 @@ enum class BandKind {
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
 /// Leaves every target out in turn, learns from the others, and compares what is predicted with the mean of the
-/// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target. The sd beside
+/// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target (but the kind of
+/// kernel, which is chosen once for all rows). The sd beside
 /// it is that of the skill's own hyperparameters: searched anew, they fall now into one optimum and now into another,
 /// and a factor measured on the narrow sd of the one would be applied to the wide sd of the other.
 ///
@@ -55,12 +56,14 @@ enum class BandKind {
 /// is the least certain part of a process, and a factor measured where targets are left out would be too small between
 /// them.
 ///
-/// A factor is the least with which band() holds what was missed on the mean of the rows: `pointwise` on a share of all
-/// samples and axes, but at least half a normal quantile (so few targets do not show that the process is over twice too
-/// careful); `path` on whole targets, with the rank ceil((m + 1) level) of split conformal prediction, so that a new
-/// whole path is inside with probability m / (m + 1) when that rank is over m. All times t / z, the quantiles of
-/// Student-t and of the normal distribution, because the sd was itself measured on m targets: with D (m - 1) degrees of
-/// freedom `pointwise`, of each axis by itself, and m - 1 `path`, of whole targets.
+/// A factor is the least with which band() holds what was missed on the mean of the rows, and what their primitives
+/// miss of the recordings: `pointwise` on a share of all samples and axes, but at least half a normal quantile (few
+/// targets do not show that the process is over twice too careful); `path`, at least `pointwise`, on whole targets,
+/// with the rank ceil((m + 1) level) of split conformal prediction, so that a new whole path is inside with probability
+/// m / (m + 1) when that rank is over m. None is smaller than that of a lower level. All times t / z, the quantiles of
+/// Student-t and of the normal distribution, because the sd was itself measured on m targets: with m - 1 degrees of
+/// freedom `path`, and with D (m - 1) `pointwise`, which is a measured choice (the sd counts the latent variance twice;
+/// m - 1 would hold 99 % of synthetic intentions).
 ///
 /// Where several teachers reach one target, all of their rows are left out together.
 /// @return empty with fewer than three targets that differ

@@ -79,9 +79,9 @@ struct SkillOptions {
 };
 
 /// Learns weights as a function of dP from rows that share their settings. Hyperparameters are those of maximum
-/// evidence times priors; but for the paper's process, with the evidence to the power (targets / rows, targets of
+/// evidence times priors; but for the paper's process, with the evidence to the power (targets / rows, the targets of
 /// each teacher counted apart), because rows of a target share what sets it apart and are not the independent witnesses
-/// that the process takes them for.
+/// that the process takes them for. Durations always are learnt so.
 /// @param columns  D signal names, as the rows' axes
 /// @throws DataError [skill.too_few_rows], [skill.mixed_settings], [skill.one_target] if every row names the same
 ///         target or every dP is the same; [skill.tempo] if a shared tempo is asked for where there is none; UsageError

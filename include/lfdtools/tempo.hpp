@@ -13,7 +13,7 @@ namespace lfd {
 ///     v / n_i / (V + v / n_i) (c_i - mean)
 /// of its earliness: the best linear guess of the target's own tempo. Ends stay where they are.
 /// @param skill  learnt from these rows, with an output transform, scaling none
-/// @return rows unchanged where there are fewer than three targets or no target has two rows
+/// @return rows unchanged where there are fewer than three targets (of each teacher) or no target has two rows
 [[nodiscard]] std::vector<SkillRow> with_shared_tempo(const Skill& skill, std::vector<SkillRow> rows);
 
 }  // namespace lfd

@@ -53,7 +53,8 @@ struct Validation {
   int lifted_gates = 0;
 };
 
-/// Leaves every target out once, by all of its teachers, alone or with the others of its fold. A method learns once a
+/// Leaves every target out once, by all of its teachers, alone or with the others of its fold (folds are taken
+/// as they are, also where they part the teachers of a target). A method learns once a
 /// fold and is told of the left-out targets their mean start and mean goal, the query, and nothing else. `outside`
 /// looks at deviations from the straight minimum-jerk line between start and goal: at each phase the box that the
 /// deviations of the demonstrations of the four nearest training targets span.
