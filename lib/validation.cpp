@@ -67,26 +67,9 @@ double processor_time() {
 
 using Neighbours = std::vector<const JudgedTarget*>;
 
-double outside_depth(const Samples& path, const Neighbours& nearest_first, const Query& query) {
-  const Samples deviation = path - straight_line(query.start, query.goal, linspace(0, 1, path.rows()));
-  Samples low = Samples::Constant(path.rows(), path.cols(), std::numeric_limits<double>::infinity());
-  Samples high = -low;
-  for (std::size_t i = 0; i < std::min(neighbour_count, nearest_first.size()); ++i) {
-    for (const auto& swept : nearest_first[i]->deviations) {
-      low = low.cwiseMin(swept);
-      high = high.cwiseMax(swept);
-    }
-  }
-  const Samples beyond = (low - deviation).cwiseMax(deviation - high).cwiseMax(0.0);
-  return beyond.rowwise().norm().maxCoeff();
-}
-
-ValidationScore score(const Predicted& predicted, const JudgedTarget& target, Neighbours training,
+ValidationScore score(const Predicted& predicted, const JudgedTarget& target, const Neighbours& training,
                       const std::string& method) {
   const Query& query = target.query;
-  std::stable_sort(training.begin(), training.end(), [&](const JudgedTarget* a, const JudgedTarget* b) {
-    return (a->query.change() - query.change()).norm() < (b->query.change() - query.change()).norm();
-  });
   ValidationScore result;
   result.labels = target.labels;
   result.method = method;
@@ -94,7 +77,7 @@ ValidationScore score(const Predicted& predicted, const JudgedTarget& target, Ne
   result.end_error = (predicted.path.row(phase_count - 1).transpose() - query.goal).norm();
   const DtwPath path = dtw(predicted.path, target.mean_path);
   result.dtw = path.cost / static_cast<double>(path.steps.size());
-  result.outside = outside_depth(predicted.path, training, query);
+  result.outside = outside_depth(predicted.path, query, training);
   if (predicted.band) {
     result.band95 = band_score(predicted, 0.95, target.mean_path);
     for (const double level : nominal_levels()) {
@@ -200,6 +183,23 @@ Validation judge(const std::vector<TargetDemonstrations>& targets, const std::ve
 }
 
 }  // namespace
+
+double outside_depth(const Samples& path, const Query& query, std::vector<const JudgedTarget*> demonstrated) {
+  std::stable_sort(demonstrated.begin(), demonstrated.end(), [&](const JudgedTarget* a, const JudgedTarget* b) {
+    return (a->query.change() - query.change()).norm() < (b->query.change() - query.change()).norm();
+  });
+  const Samples deviation = path - straight_line(query.start, query.goal, linspace(0, 1, path.rows()));
+  Samples low = Samples::Constant(path.rows(), path.cols(), std::numeric_limits<double>::infinity());
+  Samples high = -low;
+  for (std::size_t i = 0; i < std::min(neighbour_count, demonstrated.size()); ++i) {
+    for (const auto& swept : demonstrated[i]->deviations) {
+      low = low.cwiseMin(swept);
+      high = high.cwiseMax(swept);
+    }
+  }
+  const Samples beyond = (low - deviation).cwiseMax(deviation - high).cwiseMax(0.0);
+  return beyond.rowwise().norm().maxCoeff();
+}
 
 BandScore band_score(const Predicted& predicted, double level, const Samples& mean_path) {
   // Both ends are given to the method, so they are no test of its band.

@@ -56,6 +56,21 @@ TEST_CASE("two ways round are told apart row by row") {
   CHECK(nearest_way(rows, *ways, rows[20].change()) != ways->of_row[0]);
 }
 
+TEST_CASE("two ways are told apart where the berth depends on the target and most rows of it go one way") {
+  const auto left = [](int target, int repetition) {
+    return target == 3 ? false : repetition % 8 < (target % 2 == 0 ? 1 : 6);
+  };
+  const auto rows = motions([&](int t, int r) { return (left(t, r) ? -1 : 1) * (0.05 + 0.03 * t); }, 0.01);
+  const auto ways = ways_of(rows);
+  REQUIRE(ways);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int target = static_cast<int>(i) / 8;
+    if (target == 3) continue;  // one way alone: below
+    CHECK((ways->of_row[i] == ways->of_row[0]) == (left(target, static_cast<int>(i) % 8) == left(0, 0)));
+  }
+  for (std::size_t i = 24; i < 32; ++i) CHECK(ways->of_row[i] != ways->of_row[0]);
+}
+
 TEST_CASE("one way is not taken for two") {
   CHECK_FALSE(ways_of(motions([](int, int) { return 0.1; }, 0.02)));
   // A single outlier is no way.

@@ -53,11 +53,9 @@ struct Validation {
   int lifted_gates = 0;
 };
 
-/// Leaves every target out once, by all of its teachers, alone or with the others of its fold (folds are taken
-/// as they are, also where they part the teachers of a target). A method learns once a
-/// fold and is told of the left-out targets their mean start and mean goal, the query, and nothing else. `outside`
-/// looks at deviations from the straight minimum-jerk line between start and goal: at each phase the box that the
-/// deviations of the demonstrations of the four nearest training targets span.
+/// Leaves every target out once, by all of its teachers, alone or with the others of its fold (folds are taken as they
+/// are, also where they part the teachers of a target). A method learns once a fold and is told of the left-out targets
+/// their mean start and mean goal, the query, and nothing else.
 /// @throws DataError [validation.too_few_targets] under three targets, or where a fold leaves under two to learn from;
 ///         UsageError [validation.method]; those of the stages, with method and fold named
 [[nodiscard]] Validation leave_one_target_out(const std::vector<TargetDemonstrations>& targets,
@@ -70,6 +68,12 @@ struct Validation {
 [[nodiscard]] Validation judge_on_test_targets(const std::vector<TargetDemonstrations>& targets,
                                                const std::vector<TargetDemonstrations>& test,
                                                const ValidationOptions& options);
+
+/// Greatest depth of a path beyond what demonstrations swept: at each phase, by how far its deviation from the straight
+/// minimum-jerk line lies outside the box that the deviations of the four nearest targets (by goal - start) span [m].
+/// @param path  phase_count x D
+[[nodiscard]] double outside_depth(const Samples& path, const Query& query,
+                                   std::vector<const JudgedTarget*> demonstrated);
 
 /// @param predicted  with a band   @param mean_path  phase_count x D [m]
 [[nodiscard]] BandScore band_score(const Predicted& predicted, double level, const Samples& mean_path);
