@@ -15,7 +15,7 @@ case "${1-}" in
   "") ;;
   --tests)
     testing=ON
-    packages="$packages catch2 liborocos-kdl-dev python3-numpy python3-scipy"
+    packages="$packages catch2 liborocos-kdl-dev libfcl-dev python3-numpy python3-scipy"
     ;;
   *) echo "setup.sh: unknown option $1" >&2; exit 64 ;;
 esac
