@@ -1,0 +1,254 @@
+#include "lfdtools/touching.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include "io_fixture.hpp"
+#include "lfdtools/io/data_files.hpp"
+#include "lfdtools/io/robot_file.hpp"
+#include "lfdtools/path.hpp"
+#include "lfdtools/random.hpp"
+
+using namespace lfd;
+
+namespace {
+
+double normal_tail(double c) {
+  return 0.5 * std::erfc(c / std::sqrt(2.0));
+}
+
+Solid plane(const Vector3& position, const Vector3& up) {
+  Solid solid;
+  solid.shape = SolidShape::plane;
+  solid.pose = {Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), up).toRotationMatrix(), position};
+  return solid;
+}
+
+/// An arm whose only body is a ball at the flange.
+Robot ball() {
+  Robot robot = nominal_ur10();
+  robot.links = {{"ball", 6, {0, 0, 0}, {0, 0, 0}, 0.05}};
+  return robot;
+}
+
+const Joints bent = (Joints() << 0.3, -1.8, 1.9, -1.4, -1.5, 0.2).finished();
+
+Vector3 hand() {
+  return forward_kinematics(nominal_ur10(), bent).position;
+}
+
+Samples still(Eigen::Index T) {
+  return bent.transpose().replicate(T, 1);
+}
+
+/// Covariance of one signal over time: smooth, of standard deviation sd and length scale l samples.
+Matrix smooth(Eigen::Index T, double sd, double l) {
+  Matrix A(T, T);
+  for (Eigen::Index i = 0; i < T; ++i) {
+    for (Eigen::Index j = 0; j < T; ++j) {
+      A(i, j) = sd * sd * std::exp(-0.5 * std::pow(static_cast<double>(i - j) / l, 2));
+    }
+  }
+  return A;
+}
+
+}  // namespace
+
+TEST_CASE("a spread is the covariance of the file, by sample and turned into the base") {
+  const Eigen::Index T = 5;
+  const std::vector<Matrix> parts = {smooth(T, 0.01, 2), smooth(T, 0.02, 3), smooth(T, 0.005, 1)};
+  Matrix joint = Matrix::Zero(3 * T, 3 * T);
+  for (Eigen::Index a = 0; a < 3; ++a) joint.block(a * T, a * T, T, T) = parts[static_cast<std::size_t>(a)];
+  joint.block(0, T, T, T) = joint.block(T, 0, T, T) = 0.3 * smooth(T, 0.01, 2);
+  const Matrix3 R = rotation_from_rpy({0.3, -0.5, 1.0});
+  for (const auto& covariance : {parts, std::vector<Matrix>{joint}}) {
+    const HandSpread spread = hand_spread(covariance, R);
+    REQUIRE(spread.samples() == T);
+    const Matrix product = spread.factor * spread.factor.transpose();
+    for (Eigen::Index t = 0; t < T; ++t) {
+      for (Eigen::Index u = 0; u < T; ++u) {
+        Matrix3 block = Matrix3::Zero();
+        for (Eigen::Index a = 0; a < 3; ++a) {
+          for (Eigen::Index b = 0; b < 3; ++b) {
+            if (covariance.size() == 1) block(a, b) = joint(a * T + t, b * T + u);
+            if (covariance.size() == 3 && a == b) block(a, a) = parts[static_cast<std::size_t>(a)](t, u);
+          }
+        }
+        CHECK((product.block(3 * t, 3 * u, 3, 3) - R * block * R.transpose()).cwiseAbs().maxCoeff() < 1e-12);
+      }
+    }
+  }
+  const Vector share = Vector::LinSpaced(T, 0, 1);
+  const HandSpread shifted = with_shift(HandSpread{}, {0.01, 0.02, 0.03}, share);
+  const Matrix product = shifted.factor * shifted.factor.transpose();
+  CHECK(product(3 * 4 + 1, 3 * 2 + 1) == Approx(0.02 * 0.02 * 0.5));
+  CHECK(product(3 * 4 + 1, 3 * 2 + 2) == 0);
+  CHECK(with_shift(hand_spread(parts, R), {0.01, 0.01, 0.01}, share).samples() == T);
+}
+
+TEST_CASE("covariances that are none are refused") {
+  Matrix bad = Matrix::Identity(6, 6);
+  bad(0, 1) = bad(1, 0) = 2;
+  const Matrix3 I = Matrix3::Identity();
+  CHECK(refusal_of([&] { (void)hand_spread({bad}, I); }).id == "touching.not_positive");
+  CHECK(refusal_of([&] { (void)hand_spread({Matrix::Identity(4, 4)}, I); }).id == "touching.shape");
+  CHECK(refusal_of([&] { (void)hand_spread({bad, bad}, I); }).id == "touching.shape");
+  CHECK(refusal_of([&] { (void)hand_spread({Matrix::Constant(3, 3, NAN)}, I); }).id == "touching.shape");
+  const ArmClearance arm(ball(), {});
+  CHECK(refusal_of([&] { (void)touching(arm, still(3), HandSpread{Matrix::Zero(6, 1)}); }).id == "touching.shape");
+}
+
+TEST_CASE("one plane: the normal tail, also far out, and with a margin") {
+  for (const double room : {-0.01, 0.0, 0.02, 0.06}) {
+    const ArmClearance arm(ball(), {plane(hand() - Vector3(0, 0, 0.05 + room), Vector3::UnitZ())});
+    const HandSpread spread = hand_spread({Matrix::Identity(3, 3) * 1e-4}, Matrix3::Identity());
+    const Touching result = touching(arm, still(1), spread);
+    CHECK(result.samples[0].probability == Approx(normal_tail(room / 0.01)).epsilon(1e-6));
+    CHECK(result.path.probability == Approx(result.samples[0].probability));
+    CHECK(result.path.error == 0);
+    CHECK(touching(arm, still(1), spread, {}, {.margin = 0.005}).path.probability ==
+          Approx(normal_tail((room - 0.005) / 0.01)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("two walls at right angles are independent, two that face each other exclude each other") {
+  const auto chance = [](double first, double second, const Vector3& up) {
+    const ArmClearance arm(ball(), {plane(hand() - Vector3(0, 0, 0.05 + first), Vector3::UnitZ()),
+                                    plane(hand() - (0.05 + second) * up, up)});
+    const HandSpread spread = hand_spread({Matrix::Identity(3, 3) * 1e-4}, Matrix3::Identity());
+    return touching(arm, still(1), spread).path;
+  };
+  for (const double room : {0.0, 0.01, 0.03, 0.055}) {
+    const double p = normal_tail(room / 0.01);
+    const Chance corner = chance(room, room, Vector3::UnitX());
+    CHECK(corner.probability == Approx(2 * p - p * p).margin(4 * corner.error + 1e-4 * p));
+    CHECK(corner.error < 0.01 * corner.probability);
+    const Chance channel = chance(room, room, -Vector3::UnitZ());
+    CHECK(channel.probability == Approx(2 * p).margin(4 * channel.error + 1e-4 * p));
+  }
+}
+
+TEST_CASE("samples that err together touch together, those that err apart add up") {
+  const ArmClearance arm(ball(), {plane(hand() - Vector3(0, 0, 0.05 + 0.02), Vector3::UnitZ())});
+  const Eigen::Index T = 40;
+  const double p = normal_tail(2);
+  const auto path_chance = [&](const Matrix& A) {
+    return touching(arm, still(T), hand_spread({A, A, A}, Matrix3::Identity())).path;
+  };
+  const Chance together = path_chance(Matrix::Constant(T, T, 1e-4));
+  CHECK(together.probability == Approx(p).epsilon(1e-3));
+  const Chance apart = path_chance(Matrix::Identity(T, T) * 1e-4);
+  CHECK(apart.probability == Approx(1 - std::pow(1 - p, T)).margin(4 * apart.error));
+  CHECK(apart.error < 0.01);
+  // A shift of everything, told as such.
+  const auto shifted = with_shift(HandSpread{}, {0, 0, 0.01}, Vector::Ones(T));
+  CHECK(touching(arm, still(T), shifted).path.probability == Approx(p).epsilon(1e-3));
+}
+
+TEST_CASE("without spread it is certain or impossible, and the same call says the same") {
+  const auto arm = [](double room) {
+    return ArmClearance(ball(), {plane(hand() - Vector3(0, 0, 0.05 + room), Vector3::UnitZ())});
+  };
+  const HandSpread none{Matrix::Zero(6, 1)};
+  CHECK(touching(arm(0.001), still(2), none).path.probability == 0);
+  CHECK(touching(arm(-0.001), still(2), none).path.probability == 1);
+  const HandSpread spread =
+      hand_spread({smooth(9, 0.01, 2), smooth(9, 0.01, 2), smooth(9, 0.01, 2)}, Matrix3::Identity());
+  const Touching a = touching(arm(0.01), still(9), spread), b = touching(arm(0.01), still(9), spread);
+  CHECK(a.path.probability == b.path.probability);
+  CHECK(touching(arm(0.01), still(9), spread, {}, {.seed = 2}).path.probability != a.path.probability);
+}
+
+TEST_CASE("10000 sampled hand paths, by inverse kinematics and full distances, touch as often") {
+  CapturedMessages captured;
+  const Robot robot = load_robot(find_data_file("ur10", "robots"), captured.messages, true);
+  const Pose tool{Matrix3::Identity(), {0, 0, 0.12}};
+  Solid rod;
+  rod.shape = SolidShape::cylinder;
+  rod.pose = {rotation_from_rpy({0.3, 0.5, 0}), {-0.15, 0.66, 0.33}};
+  rod.radius = 0.06;
+  rod.length = 0.5;
+  Solid shelf;
+  shelf.shape = SolidShape::box;
+  shelf.pose.position = {-0.45, 0.5, 0.75};
+  shelf.size = {0.3, 0.3, 0.02};
+  const ArmClearance arm(robot, {rod, shelf}, tool_capsule(tool, 0.01));
+
+  // A hand path that passes both, the tool along y of the base.
+  const Eigen::Index T = 12;
+  const Matrix3 turned = rotation_from_rpy({-std::numbers::pi / 2, 0, 0});
+  const auto pose_at = [&](const Vector3& tip) { return Pose{turned, tip} * inverse(tool); };
+  std::vector<Pose> poses;
+  Samples tips(T, 3);
+  const Vector times = Vector::LinSpaced(T, 0, 3);
+  for (Eigen::Index t = 0; t < T; ++t) {
+    const double s = static_cast<double>(t) / static_cast<double>(T - 1);
+    tips.row(t) << -0.32 + 0.42 * s, 0.45 + 0.25 * s, 0.58 + 0.05 * std::sin(std::numbers::pi * s) - 0.05 * s;
+    poses.push_back(pose_at(tips.row(t).transpose()));
+  }
+  PathOptions elbow_up;
+  elbow_up.seed = (Joints() << 2.9, -1.3, 4.0, 0.5, 0.2, 0.0).finished();
+  const JointPath path = solve_path(robot, poses, times, elbow_up);
+  REQUIRE(path.status == PathStatus::continuous);
+  const double least = closest_approach(arm, path.joints).distance;
+
+  const InverseKinematics solver(robot);
+  for (const double sd : {0.004, 0.01}) {
+    std::vector<Matrix> covariance;
+    for (const double part : {1.0, 0.7, 1.3}) {
+      covariance.push_back(smooth(T, part * sd, 3) + Matrix::Identity(T, T) * 1e-8);
+    }
+    const HandSpread spread = hand_spread(covariance, Matrix3::Identity());
+    // The same room in standard deviations for both, so that touching is neither rare nor sure.
+    const double margin = least - 1.5 * sd;
+    const Touching told = touching(arm, path.joints, spread, tool, {.margin = margin});
+    Random random(9);
+    constexpr int draws = 10'000;
+    int touched = 0;
+    std::vector<int> at(static_cast<std::size_t>(T), 0);
+    for (int i = 0; i < draws; ++i) {
+      Vector z(spread.factor.cols());
+      for (double& value : z) value = random.normal();
+      const Vector shift = spread.factor * z;
+      bool any = false;
+      for (Eigen::Index t = 0; t < T; ++t) {
+        const Joints near = path.joints.row(t).transpose();
+        Joints best = near;
+        double nearest = 1e9;
+        for (const IkSolution& solution : solver(pose_at(tips.row(t).transpose() + shift.segment<3>(3 * t)))) {
+          Joints way = solution.joints - near;
+          for (double& angle : way) angle = wrap_angle(angle);
+          if (way.norm() < nearest) {
+            nearest = way.norm();
+            best = near + way;
+          }
+        }
+        REQUIRE(nearest < 0.5);
+        const bool touches = arm.least(best) <= margin;
+        if (touches) ++at[static_cast<std::size_t>(t)];
+        any = any || touches;
+      }
+      if (any) ++touched;
+    }
+    const double counted = static_cast<double>(touched) / draws;
+    const auto error = [&](double p) { return std::sqrt(p * (1 - p) / draws); };
+    std::cout << "touching, hand sd " << sd << " m: told " << told.path.probability << " +- " << told.path.error
+              << ", counted " << counted << " +- " << error(counted) << "\n";
+    CHECK(told.path.probability > 0.02);
+    // A convex solid lies beyond the plane that stands for it: the first order errs towards touching, by about
+    // sd / (radius of the rounding) of the probability. Here at most 3 sd / 1 m.
+    const auto agree = [&](const Chance& first_order, double p) {
+      const double noise = 4 * error(p) + 4 * first_order.error;
+      CHECK(first_order.probability >= p - noise - 0.2 * sd);
+      CHECK(first_order.probability <= p + noise + 3.0 * sd);
+    };
+    agree(told.path, counted);
+    for (std::size_t t = 0; t < at.size(); ++t) {
+      agree(told.samples[t], static_cast<double>(at[t]) / draws);
+    }
+  }
+}
