@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "lfdtools/error.hpp"
+#include "lfdtools/path_refinement.hpp"
+#include "lfdtools/posture.hpp"
 #include "lfdtools/posture_graph.hpp"
+#include "lfdtools/singularity.hpp"
 
 namespace lfd {
 namespace {
@@ -17,9 +20,12 @@ using Layer = std::vector<IkSolution>;
 
 void check(const std::vector<Pose>& flange, const Vector& times, const PathOptions& options) {
   const bool positive = options.tolerance > 0.0 && options.max_step > 0.0 && options.midpoint_tolerance > 0.0;
-  if (!positive || !(options.step_slack >= 1.0) || (options.seed && !options.seed->allFinite())) {
+  const bool counted = options.refinements >= 0 && options.refinements <= 20 &&
+                       (!options.branch || (*options.branch >= 0 && *options.branch <= 7));
+  if (!positive || !counted || !(options.step_slack >= 1.0) || (options.seed && !options.seed->allFinite())) {
     throw UsageError("path.options",
-                     "tolerances and the largest step must be positive, the slack at least 1 and the seed finite");
+                     "tolerances and the largest step must be positive, the slack at least 1, the seed finite, the "
+                     "branch 0 to 7 and the refinements 0 to 20");
   }
   const auto T = static_cast<Eigen::Index>(flange.size());
   if (T < 1 || times.size() != T) {
@@ -119,39 +125,66 @@ double deviation_midway(const Robot& robot, const Joints& q0, const Joints& q1, 
   return distance(forward_kinematics(robot, 0.5 * (q0 + q1)), interpolate(from, to, 0.5)).largest();
 }
 
+/// Sets status, sample and reason, for people and in the numbers of the samples given.
+void fail(PathStatus status, Eigen::Index row, const std::string& reason, const PathSampling& sampling,
+          JointPath& path) {
+  path.status = status;
+  path.sample = sampling.given(row);
+  path.reason = reason;
+}
+
 /// Sets status, sample and reason of a path whose joints are known.
-void judge(const PathOptions& options, JointPath& path) {
+void judge(const InverseKinematics& arm, const PathOptions& options, const PathSampling& sampling, JointPath& path) {
+  const auto why = [&](Eigen::Index row) {
+    const std::string limit = sampling.limit(row, options.refinements);
+    return limit.empty() ? limit : "; " + limit;
+  };
   for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
     Eigen::Index joint = 0;
     const double step = (path.joints.row(t) - path.joints.row(t - 1)).cwiseAbs().maxCoeff(&joint);
     if (!(step > options.max_step)) continue;
-    path.status = PathStatus::jump;
-    path.sample = t;
-    path.reason =
-        fmt::format("joint {} moves {:.3g} rad to sample {} on the best of all paths", joint + 1, step, t + 1);
+    SingularityDistances least = singularity_distances(arm.geometry(), path.joints.row(t).transpose());
+    const SingularityDistances before = singularity_distances(arm.geometry(), path.joints.row(t - 1).transpose());
+    least = {std::min(least.shoulder, before.shoulder), std::min(least.elbow, before.elbow),
+             std::min(least.wrist, before.wrist)};
+    const std::string near = nearest_singularity(least);
+    fail(PathStatus::jump, t,
+         fmt::format("joint {} moves {:.3g} rad to {} on the best of all paths{}{}", joint + 1, step, sampling.name(t),
+                     near.empty() ? near : ", near " + near, why(t)),
+         sampling, path);
     return;
   }
   for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
     if (!(path.midpoint_deviation[t] > options.midpoint_tolerance)) continue;
-    path.status = PathStatus::deviates;
-    path.sample = t;
-    path.reason = fmt::format("the hand is off its path by {:.3g} (m or rad) midway to sample {}",
-                              path.midpoint_deviation[t], t + 1);
+    fail(PathStatus::deviates, t,
+         fmt::format("the hand is off its path by {:.3g} (m or rad) midway to {}{}", path.midpoint_deviation[t],
+                     sampling.name(t), why(t)),
+         sampling, path);
     return;
   }
 }
 
-}  // namespace
+/// The rows of a path whose interval is to be halved.
+std::vector<Eigen::Index> too_wide(const PathOptions& options, const JointPath& path) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
+    const double step = (path.joints.row(t) - path.joints.row(t - 1)).cwiseAbs().maxCoeff();
+    if (step > options.max_step || path.midpoint_deviation[t] > options.midpoint_tolerance) rows.push_back(t);
+  }
+  return rows;
+}
 
-JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
-                     const PathOptions& options) {
-  check(flange, times, options);
+/// The best path through the samples as they are, not judged yet.
+JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampling, const PathOptions& options) {
   const Robot& robot = arm.robot();
+  const std::vector<Pose>& flange = sampling.poses();
   JointPath path;
   path.joints.resize(0, 6);
-  const std::vector<Layer> layers = solve_layers(arm, flange, times, options);
+  path.times = sampling.times();
+  path.given = sampling.given();
+  std::vector<Layer> layers = solve_layers(arm, flange, path.times, options);
   for (std::size_t t = 0; t < layers.size(); ++t) {
-    if (layers[t].empty()) path.unreachable.push_back(static_cast<Eigen::Index>(t));
+    if (layers[t].empty()) path.unreachable.push_back(path.given[t]);
   }
   if (!path.unreachable.empty()) {
     path.status = PathStatus::unreachable;
@@ -159,17 +192,26 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
     path.reason = fmt::format("sample {} is out of reach", path.sample + 1);
     return path;
   }
+  for (std::size_t t = 0; options.branch && t < layers.size(); ++t) {
+    Layer& layer = layers[t];
+    const auto leaves = [&](const IkSolution& s) { return !keeps_branch(arm, s.joints, *options.branch); };
+    layer.erase(std::remove_if(layer.begin(), layer.end(), leaves), layer.end());
+    for (IkSolution& solution : layer) solution.branch = *options.branch;
+    if (!layer.empty()) continue;
+    const auto row = static_cast<Eigen::Index>(t);
+    fail(PathStatus::other_branch, row, fmt::format("{} has no solution there", sampling.name(row)), sampling, path);
+    return path;
+  }
 
   std::vector<std::vector<Posture>> postures(layers.size());
   for (std::size_t t = 0; t < layers.size(); ++t) {
     for (const IkSolution& solution : layers[t]) postures[t].push_back({solution.joints, solution.branch});
   }
-  Way way = best_way(postures, times, robot.limits,
+  Way way = best_way(postures, path.times, robot.limits,
                      {options.seed, options.max_step, options.step_slack, options.respect_limits});
   if (way.posture.empty()) {
-    path.status = PathStatus::outside_limits;
-    path.sample = way.blocked;
-    path.reason = fmt::format("no path within the joint ranges comes to sample {}", way.blocked + 1);
+    fail(PathStatus::outside_limits, way.blocked,
+         fmt::format("no path within the joint ranges comes to {}", sampling.name(way.blocked)), sampling, path);
     return path;
   }
 
@@ -191,7 +233,39 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
     path.midpoint_deviation[t] = deviation_midway(robot, before, q, flange[i - 1], flange[i]);
     path.branch_changes += path.branch[i] != path.branch[i - 1] ? 1 : 0;
   }
-  judge(options, path);
+  return path;
+}
+
+/// The best path through the samples, intervals halved where that helps.
+JointPath solve_halving(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                        const PathOptions& options) {
+  PathSampling sampling(flange, times);
+  JointPath path = solve_samples(arm, sampling, options);
+  while (sampling.halve(arm, too_wide(options, path), options.refinements, options.tolerance)) {
+    path = solve_samples(arm, sampling, options);
+  }
+  if (path.joints.rows() > 0) judge(arm, options, sampling, path);
+  return path;
+}
+
+}  // namespace
+
+JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
+                     const PathOptions& options) {
+  check(flange, times, options);
+  JointPath kept = solve_halving(arm, flange, times, options);
+  if (!options.branch || kept.status == PathStatus::continuous || kept.status == PathStatus::deviates ||
+      kept.status == PathStatus::unreachable) {
+    return kept;
+  }
+  PathOptions any = options;
+  any.branch.reset();
+  JointPath path = solve_halving(arm, flange, times, any);
+  if (path.joints.rows() == 0) return path;
+  if (path.status == PathStatus::jump && kept.status == PathStatus::jump) return kept;
+  path.status = PathStatus::other_branch;
+  path.sample = kept.sample;
+  path.reason = fmt::format("the posture {} cannot be kept: {}", branch_name(*options.branch), kept.reason);
   return path;
 }
 

@@ -1,4 +1,5 @@
 // Second opinion on the arm: Orocos KDL.
+#include <Eigen/SVD>
 #include <catch2/catch.hpp>
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
@@ -6,6 +7,7 @@
 #include <numbers>
 
 #include "lfdtools/random.hpp"
+#include "lfdtools/singularity.hpp"
 #include "lfdtools/ur10.hpp"
 
 using namespace lfd;
@@ -33,7 +35,7 @@ TEST_CASE("forward kinematics and Jacobian agree with Orocos KDL to 1e-12, and s
 
   const InverseKinematics arm(robot);
   Random random(1);
-  double forward = 0.0, inverse_residual = 0.0, derivative = 0.0;
+  double forward = 0.0, inverse_residual = 0.0, derivative = 0.0, volume = 0.0, condition = 0.0;
   for (int i = 0; i < 10000; ++i) {
     Joints q;
     for (double& angle : q) angle = random.uniform(-2 * std::numbers::pi, 2 * std::numbers::pi);
@@ -47,7 +49,14 @@ TEST_CASE("forward kinematics and Jacobian agree with Orocos KDL to 1e-12, and s
     KDL::Jacobian kdl_jacobian(6);
     REQUIRE(jacobian_solver.JntToJac(angles, kdl_jacobian) >= 0);
     derivative = std::max(derivative, (kdl_jacobian.data - jacobian(robot, q)).cwiseAbs().maxCoeff());
+    // Manipulability and condition number of KDL's Jacobian, by its singular values.
+    const Vector sigma = Eigen::JacobiSVD<Matrix>(kdl_jacobian.data).singularValues();
+    volume = std::max(volume, std::abs(sigma.prod() - manipulability(jacobian(robot, q))));
+    condition =
+        std::max(condition, std::abs(condition_number(jacobian(robot, q)) * sigma[5] / sigma[0] - 1.0) * sigma[5]);
   }
+  CHECK(volume < 1e-13);
+  CHECK(condition < 1e-13);
   CHECK(forward < 1e-12);
   CHECK(inverse_residual < 1e-12);
   CHECK(derivative < 1e-12);

@@ -55,8 +55,8 @@ double largest_step(const Samples& joints) {
   return (joints.bottomRows(T - 1) - joints.topRows(T - 1)).cwiseAbs().maxCoeff();
 }
 
-/// Largest step of a solver that starts at the smallest angles and goes to the nearest solution from sample to sample.
-double greedy_step(const InverseKinematics& arm, const std::vector<Pose>& poses) {
+/// Largest step of a solver that starts nearest to given joints and goes to the nearest solution from sample to sample.
+double greedy_step(const InverseKinematics& arm, const std::vector<Pose>& poses, const Joints& start) {
   const auto nearest_to = [](const IkSolutions& found, const Joints& q) {
     const auto apart = [&](const IkSolution& s) {
       double step = 0.0;
@@ -67,7 +67,7 @@ double greedy_step(const InverseKinematics& arm, const std::vector<Pose>& poses)
     const IkSolution& best = *std::min_element(found.begin(), found.end(), closer);
     return std::make_pair(best.joints, apart(best));
   };
-  Joints q = nearest_to(arm(poses[0]), Joints::Zero()).first;
+  Joints q = nearest_to(arm(poses[0]), start).first;
   double largest = 0.0;
   for (const Pose& pose : poses) {
     const auto [next, step] = nearest_to(arm(pose), q);
@@ -91,10 +91,10 @@ double worst_pose_error(const Robot& robot, const Samples& joints, const std::ve
 TEST_CASE("hand paths of smooth joint motions are followed without a jump, where going to the nearest solution fails") {
   const InverseKinematics arm(nominal_ur10());
   Random random(1);
-  constexpr Eigen::Index T = 250;
+  constexpr Eigen::Index T = 150;
   const Vector times = Vector::LinSpaced(T, 0.0, 10.0);
-  int failures = 0, slower = 0, greedy_failures = 0, seeded_elsewhere = 0;
-  for (int i = 0; i < 150; ++i) {
+  int failures = 0, slower = 0, greedy_failures = 0, greedy_seeded_failures = 0, seeded_elsewhere = 0;
+  for (int i = 0; i < 1000; ++i) {
     PathOptions options;
     const Samples joints = smooth_joints(random, T, 1.2);
     const std::vector<Pose> poses = poses_of(arm.robot(), joints);
@@ -106,17 +106,20 @@ TEST_CASE("hand paths of smooth joint motions are followed without a jump, where
     CHECK(path.largest_step_ratio == Approx(largest_ratio(arm.robot(), path.joints, times)));
     CHECK(worst_pose_error(arm.robot(), path.joints, poses) < 1e-9);
     CHECK(path.joints.cwiseAbs().maxCoeff() <= 2 * pi);
-    greedy_failures += greedy_step(arm, poses) > options.max_step ? 1 : 0;
+    greedy_failures += greedy_step(arm, poses, Joints::Zero()) > options.max_step ? 1 : 0;
+    greedy_seeded_failures += greedy_step(arm, poses, joints.row(0).transpose()) > options.max_step ? 1 : 0;
 
     options.seed = joints.row(0).transpose();
     const JointPath seeded = solve_path(arm, poses, times, options);
     failures += seeded.status == PathStatus::continuous ? 0 : 1;
     seeded_elsewhere += (seeded.joints.row(0) - joints.row(0)).cwiseAbs().maxCoeff() < 1e-5 ? 0 : 1;
   }
+  INFO("jumps in 1000 paths: nearest solution " << greedy_failures << ", from known joints " << greedy_seeded_failures
+                                                << "; here " << failures << " in 2000");
   CHECK(failures == 0);
   CHECK(slower == 0);
   CHECK(seeded_elsewhere == 0);
-  CHECK(greedy_failures > 5);  // the comparison means something
+  CHECK(greedy_failures > 50);  // the comparison means something
 }
 
 TEST_CASE("a hand that passes a singularity at 1 mm, 1 cm, 10 cm is followed without a jump") {

@@ -16,6 +16,8 @@ class CubicSpline {
   [[nodiscard]] Samples operator()(const Vector& t) const;
   /// First derivative at t, m x D; zero outside the samples.
   [[nodiscard]] Samples derivative(const Vector& t) const;
+  /// Second derivatives at the samples themselves, T x D; between them they go linearly.
+  [[nodiscard]] const Samples& second_derivatives() const { return second_; }
 
  private:
   Vector times_;

@@ -21,6 +21,11 @@ struct PathOptions {
   /// Paths whose largest step is within this factor of the smallest possible count as equally good; branch changes,
   /// then length decide between them. Without it a thousandth of a step would flip an elbow.
   double step_slack = 1.1;
+  /// The branch to keep, 0..7, see branch_name; a border between branches belongs to both.
+  std::optional<int> branch;
+  /// Where a step is a jump or the hand leaves its path midway, the interval is halved, up to so many times, and the
+  /// way chosen anew: a jump keeps its size, sparse samples do not. 0: the samples stay those given.
+  int refinements = 0;
 };
 
 /// How a path came out.
@@ -29,16 +34,19 @@ enum class PathStatus {
   unreachable,     ///< a pose has no inverse kinematics; no joints
   outside_limits,  ///< poses are reached, but no chain of solutions stays within the joint ranges; no joints
   jump,            ///< the best path has a step over max_step; it is returned
-  deviates         ///< the hand leaves the path between two samples by more than midpoint_tolerance; it is returned
+  deviates,        ///< the hand leaves the path between two samples by more than midpoint_tolerance; it is returned
+  other_branch     ///< there is a path, but none without a jump in the branch to keep; the one there is is returned
 };
 
 /// A joint path, or where and why there is none.
 struct JointPath {
   PathStatus status = PathStatus::continuous;
-  Eigen::Index sample = 0;  ///< first sample where the status applies (jump, deviates: the end of the interval)
-  std::string reason;       ///< sentence for people; empty when continuous
-  std::vector<Eigen::Index> unreachable;  ///< every sample out of reach
+  Eigen::Index sample = 0;  ///< first given sample where the status applies (jump, deviates: the end of the interval)
+  std::string reason;       ///< sentence for people: where and why; empty when continuous
+  std::vector<Eigen::Index> unreachable;  ///< every given sample out of reach
 
+  Vector times;                     ///< T >= the samples given: times of the rows, inserted ones among them [s]
+  std::vector<Eigen::Index> given;  ///< T: the given sample that a row is or, inserted before it, leads to
   Samples joints;                   ///< T x 6 [rad], whole turns included; 0 x 6 where there is no path
   std::vector<int> branch;          ///< T, see branch_name
   Vector residual;                  ///< T, larger of metres and radians
@@ -46,6 +54,9 @@ struct JointPath {
   Vector midpoint_deviation;        ///< T, of the interval ending at the sample (0 for the first), larger of m and rad
   double largest_step_ratio = 0.0;  ///< largest joint speed over its limit
   int branch_changes = 0;           ///< samples whose branch differs from the one before
+
+  /// Whether a row was put in before the sample that it leads to.
+  [[nodiscard]] bool inserted(std::size_t row) const { return row + 1 < given.size() && given[row + 1] == given[row]; }
 };
 
 /// Joint angles along poses: the best way through the layered graph of all inverse kinematics solutions and all whole

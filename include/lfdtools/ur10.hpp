@@ -62,6 +62,8 @@ class InverseKinematics {
   [[nodiscard]] int branch(const Joints& q) const;
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
+  /// Of a calibrated robot: of the nearest exact arm. Offsets in (-pi, pi].
+  [[nodiscard]] const UrGeometry& geometry() const { return geometry_; }
 
  private:
   Robot robot_;

@@ -13,6 +13,7 @@ void declare_arm_gates(Program& program, ArmLimits& limits) {
       .gate("joint_range", "no way through the poses within the joint ranges")
       .gate("joint_step", "a jump of a joint between two samples")
       .gate("midpoint", "the hand leaves the path between two samples")
+      .gate("posture", "the posture of the demonstrations of --posture cannot be kept")
       .gate("branch_change", "shoulder, elbow or wrist change over inside the path")
       .gate("joint_speed", "a joint faster than the robot's limit")
       .gate("joint_acceleration", "the same for accelerations, where the robot file has limits")
@@ -28,6 +29,7 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
   const auto refuse = [&](std::string_view gate, Eigen::Index sample, const std::string& text) {
     run.refuse(gate, name + text, recording.place(sample));
   };
+  const auto given = [&](Eigen::Index row) { return path.given[static_cast<std::size_t>(row)]; };
   switch (path.status) {
     case PathStatus::unreachable:
       refuse("unreachable", path.sample, path.reason);
@@ -41,45 +43,49 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
     case PathStatus::deviates:
       refuse("midpoint", path.sample, path.reason);
       break;
+    case PathStatus::other_branch:
+      refuse("posture", path.sample, path.reason);
+      break;
     case PathStatus::continuous:
       break;
   }
   if (path.joints.rows() == 0) return false;
   for (std::size_t k = 1; k < path.branch.size(); ++k) {
     if (path.branch[k] == path.branch[k - 1]) continue;
-    refuse("branch_change", static_cast<Eigen::Index>(k),
+    refuse("branch_change", path.given[k],
            fmt::format("the arm changes from {} to {}", branch_name(path.branch[k - 1]), branch_name(path.branch[k])));
     break;
   }
-  const MotionFigures figures = motion_figures(robot, recording.demonstration.trajectory.times, path.joints, tool);
+  const MotionFigures figures = motion_figures(robot, path.times, path.joints, tool);
   const Worst speed = worst(figures.speed_ratio);
   if (speed.value > 1) {
-    refuse("joint_speed", speed.sample, fmt::format("a joint moves at {:.2f} times its speed limit", speed.value));
+    refuse("joint_speed", given(speed.sample),
+           fmt::format("a joint moves at {:.2f} times its speed limit", speed.value));
   }
   const Worst acceleration = worst(figures.acceleration_ratio);
   if (acceleration.value > 1) {
-    refuse("joint_acceleration", acceleration.sample,
+    refuse("joint_acceleration", given(acceleration.sample),
            fmt::format("a joint accelerates with {:.2f} times its limit", acceleration.value));
   }
   const Worst tcp_speed = worst(figures.tcp_speed);
   if (tcp_speed.value > limits.tcp_speed) {
-    refuse("tcp_speed", tcp_speed.sample,
+    refuse("tcp_speed", given(tcp_speed.sample),
            fmt::format("the tool tip moves at {:.3f} m/s, over {:g} m/s", tcp_speed.value, limits.tcp_speed));
   }
   const Worst tcp_acceleration = worst(figures.tcp_acceleration);
   if (limits.tcp_acceleration && tcp_acceleration.value > *limits.tcp_acceleration) {
-    refuse("tcp_acceleration", tcp_acceleration.sample,
+    refuse("tcp_acceleration", given(tcp_acceleration.sample),
            fmt::format("the tool tip accelerates with {:.3f} m/s^2, over {:g} m/s^2", tcp_acceleration.value,
                        *limits.tcp_acceleration));
   }
   const Worst condition = worst(path.condition);
   if (condition.value > limits.condition) {
-    refuse("condition", condition.sample,
+    refuse("condition", given(condition.sample),
            fmt::format("the condition number is {:.1f}, over {:g}: a singularity is near", condition.value,
                        limits.condition));
   } else if (condition.value > limits.condition_warning) {
     run.messages().warning("ik.condition", fmt::format("{}the condition number comes to {:.1f}", name, condition.value),
-                           recording.place(condition.sample));
+                           recording.place(given(condition.sample)));
   }
   run.figure("largest_step", worst(figures.step).value);
   run.figure("largest_speed_ratio", speed.value);

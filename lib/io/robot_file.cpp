@@ -1,7 +1,9 @@
 #include "lfdtools/io/robot_file.hpp"
 
 #include "json_check.hpp"
+#include "lfdtools/io/input.hpp"
 #include "lfdtools/io/json_writer.hpp"
+#include "robot_formats.hpp"
 
 namespace lfd {
 namespace {
@@ -9,6 +11,7 @@ namespace {
 constexpr const char* format = "lfdtools.robot";
 constexpr std::size_t joints = 6;
 constexpr std::size_t most_links = 1000;
+constexpr std::uint64_t most_bytes = 10'000'000;  // of a file in another format
 
 Pose read_pose(const JsonView& view) {
   view.only({"position", "orientation"});
@@ -59,6 +62,15 @@ Capsule read_link(const JsonView& view) {
   return link;
 }
 
+/// The bytes of a file in another format.
+[[maybe_unused]] std::string all_of(const std::string& path) {
+  const Input input(path);
+  if (input.size() > most_bytes) throw ConfigError("robot.too_long", "no robot takes over 10 MB", {path, 0, 0, ""});
+  std::string text(static_cast<std::size_t>(input.size()), '\0');
+  text.resize(input.read_at(0, text.data(), text.size()));
+  return text;
+}
+
 }  // namespace
 
 Robot read_robot(const JsonDocument& document) {
@@ -81,6 +93,22 @@ Robot read_robot(const JsonDocument& document) {
 }
 
 Robot load_robot(const std::string& path, Messages& messages, bool strict) {
+  if (path.ends_with(".yaml") || path.ends_with(".yml")) {
+#ifdef LFD_WITH_YAML
+    return read_calibration(all_of(path), path, messages, strict);
+#else
+    throw ConfigError("robot.no_yaml", "these programs were built without yaml-cpp, which reads calibrations",
+                      {path, 0, 0, ""});
+#endif
+  }
+  if (path.ends_with(".urdf")) {
+#ifdef LFD_WITH_URDF
+    return read_urdf(all_of(path), path);
+#else
+    throw ConfigError("robot.no_urdf", "these programs were built without urdfdom (LFD_URDF), which reads URDF",
+                      {path, 0, 0, ""});
+#endif
+  }
   JsonOptions options;
   options.fault = Fault::config;
   options.strict = strict;

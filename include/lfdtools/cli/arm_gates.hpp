@@ -21,7 +21,7 @@ void declare_arm_gates(Program& program, ArmLimits& limits);
 
 /// Judges a joint path gate by gate. @return false if there is no path to write (its gate was lifted)
 /// @throws Error(Fault::gate) gate.unreachable, joint_range, joint_step, joint_speed, joint_acceleration, tcp_speed,
-///         tcp_acceleration, condition, branch_change, midpoint; the place is the line of the worst sample
+///         tcp_acceleration, condition, branch_change, midpoint, posture; the place is the line of the worst sample
 bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
            const ArmLimits& limits, Run& run);
 

@@ -13,8 +13,9 @@ namespace lfd {
 /// @throws as JsonView and check(Robot), with the pointer
 [[nodiscard]] Robot read_robot(const JsonDocument& document);
 
-/// The robot of a file.
-/// @throws as Input, JsonStream::next (ConfigError) and read_robot
+/// The robot of a file: lfdtools.robot, or by its ending a UR calibration (.yaml, .yml) or a URDF (.urdf).
+/// @throws as Input, JsonStream::next (ConfigError) and read_robot; ConfigError [yaml.*], [urdf.*], [robot.not_dh],
+///         [robot.unknown_model], [robot.too_long]; [robot.no_yaml], [robot.no_urdf] where it was built without them
 [[nodiscard]] Robot load_robot(const std::string& path, Messages& messages, bool strict = false);
 
 /// One line.

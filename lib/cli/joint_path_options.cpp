@@ -1,0 +1,37 @@
+#include "lfdtools/cli/joint_path_request.hpp"
+
+namespace lfd::cli {
+
+void declare_joint_path_request(Program& program, JointPathRequest& request) {
+  PoseOptions& pose = request.pose;
+  program.text("--robot", request.robot, "robot file, by name or path");
+  program.numbers("--orientation", pose.orientation, {4}, "fixed orientation of the tool, w,x,y,z");
+  program.numbers("--rpy", pose.rpy, {3}, "the same as roll, pitch, yaw about fixed axes [rad]");
+  program.numbers("--tool", pose.tool, {3, 7}, "pose of the tool tip in the flange frame, x,y,z[,w,x,y,z]");
+  program.text("--frame", pose.frame, "frame of the path: base (DH frame 0), base_link, or one of the robot file's");
+  program.numbers("--seed-joints", request.seed, {6}, "joints to start near to [rad]");
+  program.path("--posture", request.posture, "demonstrations with q1..q6: keep their shoulder, elbow and wrist");
+  program.flag("--given-rows", request.given_rows, "no rows between those of the input, however far apart they are");
+  program.flag("--retime", request.retime, "new times: the fastest motion along the path within the limits");
+  program.number("--acceleration", request.acceleration, positive,
+                 "limit of every joint's acceleration, in place of the robot file's [rad/s^2]");
+  program.flag("--all", request.all, "write every distinct solution of every pose instead of a path");
+  program.flag("--speeds", request.speeds, "add columns qd1..qd6 [rad/s]");
+  program.flag("--diagnostics", request.diagnostics, "add columns branch, residual, condition");
+  program.flag("--singularities", request.singularities, "add columns manipulability, shoulder, elbow, wrist");
+  declare_arm_gates(program, request.limits);
+  program.check([&] {
+    if (pose.orientation && pose.rpy) throw UsageError("usage.exclusive", "--orientation and --rpy exclude each other");
+    if (request.posture == "-") throw UsageError("usage.posture", "--posture takes a file, not standard input");
+    if (request.all && (request.retime || !request.posture.empty())) {
+      throw UsageError("usage.exclusive", "--all writes solutions, not a path that --retime or --posture could shape");
+    }
+    (void)fixed_orientation(pose);
+    (void)tool_pose(pose);
+  });
+  program.example("skill-generate skill.json --goals holes.csv | ur10-ik --rpy 3.1416,0,0", "a tool that points down");
+  program.example("ur10-ik --robot ur10e --tool 0,0,0.15 --diagnostics motions.csv", "with a peg of 15 cm");
+  program.example("ur10-ik --posture recorded.csv --retime motions.csv", "the demonstrators' posture, at full speed");
+}
+
+}  // namespace lfd::cli

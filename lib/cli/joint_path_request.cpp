@@ -1,0 +1,230 @@
+#include "lfdtools/cli/joint_path_request.hpp"
+
+#include <fmt/format.h>
+
+#include "lfdtools/interpolation.hpp"
+#include "lfdtools/io/data_files.hpp"
+#include "lfdtools/io/labelled_table.hpp"
+#include "lfdtools/io/robot_file.hpp"
+#include "lfdtools/posture.hpp"
+#include "lfdtools/retime.hpp"
+#include "lfdtools/singularity.hpp"
+
+namespace lfd::cli {
+namespace {
+
+const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
+const std::vector<std::string> speed_names = {"qd1", "qd2", "qd3", "qd4", "qd5", "qd6"};
+/// [rad/s^2], of movej in the URScript manual: 80 deg/s^2.
+constexpr double usual_acceleration = 1.4;
+/// An interval may become 64.
+constexpr int most_halvings = 6;
+
+/// The branch that demonstrations keep; warns where they do not agree.
+int posture_of(const std::string& file, const InverseKinematics& arm, Run& run) {
+  const DemonstrationSource source(CsvTable(open_inputs({file}), run.messages()), run.messages(),
+                                   {.columns = joint_names, .extras = {}, .min_samples = 1});
+  std::vector<Recording> recordings;
+  std::vector<Samples> joints;
+  for (std::size_t i = 0; i < source.recordings(); ++i) {
+    recordings.push_back(source.recording(i));
+    joints.push_back(recordings.back().demonstration.trajectory.positions);
+  }
+  const DemonstratedPosture posture = demonstrated_posture(arm, joints);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const std::string words = describe(recordings[i].demonstration.labels);
+    const std::string name = words.empty() ? "the demonstration" : words;
+    const auto warn = [&](std::string_view id, const std::string& text) {
+      run.messages().warning(id, name + text, recordings[i].place(0));
+    };
+    if (posture.branches[i] != posture.branch) {
+      warn("ik.posture_differs", fmt::format(" is in posture {}, most are in {}", branch_name(posture.branches[i]),
+                                             branch_name(posture.branch)));
+    }
+    if (posture.samples_elsewhere[i] > 0) {
+      warn("ik.posture_changes",
+           fmt::format(" leaves its posture {} in {} of {} samples", branch_name(posture.branches[i]),
+                       posture.samples_elsewhere[i], joints[i].rows()));
+    }
+    if (posture.samples_singular[i] > 0) {
+      warn("ik.posture_singular",
+           fmt::format(" is near a singularity in {} of {} samples, which say nothing of posture",
+                       posture.samples_singular[i], joints[i].rows()));
+    }
+  }
+  run.detail("ik.posture", fmt::format("the demonstrations keep {}", branch_name(posture.branch)));
+  return posture.branch;
+}
+
+/// Paths of one run.
+class Answer {
+ public:
+  Answer(const JointPathRequest& request, Run& run)
+      : request_(request), run_(run), tool_(tool_pose(request.pose)), arm_(robot_of(request, run)) {
+    (void)frame_in_base(arm_.robot(), request.pose.frame);
+    if (request.seed) options_.seed = Eigen::Map<const Joints>(request.seed->data());
+    if (!request.posture.empty()) options_.branch = posture_of(request.posture, arm_, run);
+    options_.refinements = request.given_rows ? 0 : most_halvings;
+  }
+
+  void run() {
+    CsvTable table(run_.open(), run_.messages());
+    const bool fixed = request_.pose.orientation || request_.pose.rpy;
+    quaternions_ = !fixed && table.has("qw") && table.has("qx") && table.has("qy") && table.has("qz");
+    if (!fixed && !quaternions_) {
+      throw UsageError("ik.no_orientation", "the path has no columns qw,qx,qy,qz: give --orientation or --rpy");
+    }
+    for (const auto& name : table.columns()) {
+      if (name.starts_with("sd_") || name.starts_with("cov_")) passed_.push_back(name);
+    }
+    const std::vector<std::string> orientation =
+        quaternions_ ? std::vector<std::string>{"qw", "qx", "qy", "qz"} : std::vector<std::string>{};
+    const DemonstrationSource source(
+        std::move(table), run_.messages(),
+        {.columns = {"x", "y", "z"}, .extras = joined(orientation, passed_), .min_samples = 1});
+    LabelledTable out(run_.output(), columns());
+    for (std::size_t i = 0; i < source.recordings(); ++i) {
+      const Recording recording = source.recording(i);
+      const auto poses = flange_poses(recording, quaternions_, arm_.robot(), request_.pose);
+      request_.all ? write_solutions(recording, poses, out) : write_path(recording, poses, out);
+    }
+  }
+
+ private:
+  static Robot robot_of(const JointPathRequest& request, Run& run) {
+    Robot robot = load_robot(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
+    if (request.acceleration) robot.limits.acceleration = Joints::Constant(*request.acceleration);
+    if (request.retime && !robot.limits.acceleration) {
+      robot.limits.acceleration = Joints::Constant(usual_acceleration);
+    }
+    return robot;
+  }
+
+  [[nodiscard]] std::vector<std::string> columns() const {
+    if (request_.all) return joined({"t", "solution"}, joint_names);
+    auto columns = joined({"t"}, joint_names);
+    if (request_.speeds) columns = joined(columns, speed_names);
+    if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
+    if (request_.singularities) columns = joined(columns, {"manipulability", "shoulder", "elbow", "wrist"});
+    return joined(columns, passed_);
+  }
+
+  void write_solutions(const Recording& recording, const std::vector<Pose>& poses, LabelledTable& out) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const IkSolutions found = arm_(poses[i]);
+      if (found.empty()) run_.messages().warning("ik.unreachable", "the pose is out of reach", recording.place(row));
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        Samples cells(1, 8);
+        cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1), found[k].joints.transpose();
+        out.write(recording.demonstration.labels, cells);
+      }
+    }
+  }
+
+  void write_path(const Recording& recording, const std::vector<Pose>& poses, LabelledTable& out) {
+    const Vector& given = recording.demonstration.trajectory.times;
+    JointPath path = solve_path(arm_, poses, given, options_);
+    const Vector times = path.times;
+    Samples speeds;
+    if (request_.retime && path.joints.rows() > 1) speeds = retimed(recording, path);
+    if (!judge(path, recording, arm_.robot(), tool_, request_.limits, run_)) return;
+    report_rows(recording, path);
+    Samples rows = beside(path.times, path.joints);
+    // By the spline through the joints, so that it does not lag half a sample.
+    if (speeds.size() == 0) speeds = speeds_along(path);
+    if (request_.speeds) rows = beside(rows, speeds);
+    if (request_.diagnostics) rows = beside(rows, diagnostics(path));
+    if (request_.singularities) rows = beside(rows, singularities(path));
+    if (!passed_.empty()) {
+      rows = beside(rows, between(given, recording.extras.rightCols(static_cast<Eigen::Index>(passed_.size())), times));
+    }
+    out.write(recording.demonstration.labels, rows);
+  }
+
+  /// Gives the path the times of the fastest motion along it. @return its joint speeds, T x 6
+  Samples retimed(const Recording& recording, JointPath& path) {
+    RetimeOptions options;
+    options.velocity = arm_.robot().limits.velocity;
+    options.acceleration = *arm_.robot().limits.acceleration;
+    options.tool = tool_;
+    const bool tip_lifted = run_.options().all_lifted || run_.options().lifted.count("tcp_speed") > 0;
+    if (!tip_lifted) options.tip_speed = request_.limits.tcp_speed;
+    const Retiming law = retime(arm_.robot(), path.joints, options);
+    const Vector before = path.times;
+    path.times = law.times().array() + before[0];
+    const std::string words = describe(recording.demonstration.labels);
+    run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", words.empty() ? "" : words + ": ",
+                                         law.duration(), before[before.size() - 1] - before[0]));
+    run_.figure("duration", law.duration());
+    Samples speeds(path.times.size(), 6);
+    for (Eigen::Index t = 0; t < speeds.rows(); ++t) speeds.row(t) = law(law.times()[t]).velocity.transpose();
+    return speeds;
+  }
+
+  void report_rows(const Recording& recording, const JointPath& path) {
+    const auto more = path.times.size() - recording.demonstration.trajectory.samples();
+    if (more == 0) return;
+    std::size_t first = 0;
+    while (!path.inserted(first)) ++first;
+    const std::string words = describe(recording.demonstration.labels);
+    run_.messages().note("ik.refined",
+                         fmt::format("{}{} rows put between those given, which are too far apart for the hand to keep "
+                                     "its path",
+                                     words.empty() ? "" : words + ": ", more),
+                         recording.place(path.given[first]));
+  }
+
+  static Samples speeds_along(const JointPath& path) {
+    if (path.times.size() < 2) return Samples::Zero(path.times.size(), 6);
+    return CubicSpline(path.times, path.joints).derivative(path.times);
+  }
+
+  static Samples diagnostics(const JointPath& path) {
+    Samples figures(path.times.size(), 3);
+    for (Eigen::Index t = 0; t < figures.rows(); ++t) {
+      figures.row(t) << path.branch[static_cast<std::size_t>(t)], path.residual[t], path.condition[t];
+    }
+    return figures;
+  }
+
+  [[nodiscard]] Samples singularities(const JointPath& path) const {
+    Samples figures(path.times.size(), 4);
+    for (Eigen::Index t = 0; t < figures.rows(); ++t) {
+      const Joints q = path.joints.row(t).transpose();
+      const SingularityDistances d = singularity_distances(arm_.geometry(), q);
+      figures.row(t) << manipulability(jacobian(arm_.robot(), q)), d.shoulder, d.elbow, d.wrist;
+    }
+    return figures;
+  }
+
+  /// Values at the given times, at others linearly between.
+  static Samples between(const Vector& given, const Samples& values, const Vector& times) {
+    Samples rows(times.size(), values.cols());
+    Eigen::Index k = 0;
+    for (Eigen::Index t = 0; t < times.size(); ++t) {
+      while (given[k] < times[t]) ++k;
+      rows.row(t) = values.row(k);
+      if (given[k] == times[t]) continue;
+      const double share = (times[t] - given[k - 1]) / (given[k] - given[k - 1]);
+      rows.row(t) = (1.0 - share) * values.row(k - 1) + share * values.row(k);
+    }
+    return rows;
+  }
+
+  const JointPathRequest& request_;
+  Run& run_;
+  Pose tool_;
+  InverseKinematics arm_;
+  PathOptions options_;
+  bool quaternions_ = false;
+  std::vector<std::string> passed_;
+};
+
+}  // namespace
+
+void answer(const JointPathRequest& request, Run& run) {
+  Answer(request, run).run();
+}
+
+}  // namespace lfd::cli

@@ -1,0 +1,228 @@
+#include "lfdtools/retime.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lfdtools/error.hpp"
+#include "lfdtools/motion.hpp"
+#include "lfdtools/random.hpp"
+#include "lfdtools/ur_geometry.hpp"
+
+using namespace lfd;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// From rest to rest over a distance, one joint alone: full acceleration, perhaps full speed, full deceleration.
+double fastest(double distance, double velocity, double acceleration) {
+  const double ramps = velocity * velocity / acceleration;
+  return distance > ramps ? distance / velocity + velocity / acceleration : 2.0 * std::sqrt(distance / acceleration);
+}
+
+Samples smooth_joints(Random& random, Eigen::Index T) {
+  Samples joints(T, 6);
+  for (int j = 0; j < 6; ++j) {
+    const double size = random.uniform(0.2, 1.0), shift = random.uniform(0.0, 2 * pi), turns = random.uniform(0.3, 1.5);
+    for (Eigen::Index t = 0; t < T; ++t) {
+      const double s = static_cast<double>(t) / static_cast<double>(T - 1);
+      joints(t, j) = size * std::sin(2 * pi * turns * s + shift) + 0.3 * size * std::sin(5.0 * s + 2 * shift);
+    }
+  }
+  return joints;
+}
+
+RetimeOptions limits(double velocity, double acceleration) {
+  RetimeOptions options;
+  options.velocity.setConstant(velocity);
+  options.acceleration.setConstant(acceleration);
+  return options;
+}
+
+/// Largest share of a limit along the law, at ten times as many instants as it has rows.
+double largest_share(const Retiming& law, const RetimeOptions& options) {
+  double largest = 0.0;
+  const Eigen::Index n = 10 * law.times().size();
+  for (Eigen::Index k = 0; k <= n; ++k) {
+    const auto state = law(law.duration() * static_cast<double>(k) / static_cast<double>(n));
+    largest = std::max({largest, state.velocity.cwiseAbs().cwiseQuotient(options.velocity).maxCoeff(),
+                        state.acceleration.cwiseAbs().cwiseQuotient(options.acceleration).maxCoeff()});
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("one joint alone runs as its two limits say in closed form") {
+  const Robot robot = nominal_ur10();
+  for (const double distance : {0.05, 0.4, 3.0}) {
+    Samples joints = Samples::Zero(50, 6);
+    for (Eigen::Index t = 0; t < 50; ++t) joints(t, 1) = distance * std::pow(static_cast<double>(t) / 49.0, 1.5);
+    const Retiming law = retime(robot, joints, limits(1.2, 2.5));
+    CHECK(law.duration() == Approx(fastest(distance, 1.2, 2.5)).epsilon(1e-5));
+    CHECK(law.stretch() == Approx(1.0).margin(1e-5));
+    CHECK(law(0.0).velocity.norm() < 1e-12);
+    CHECK(law(law.duration()).velocity.norm() < 1e-6);
+    for (Eigen::Index t = 0; t < 50; ++t) {
+      CHECK((law(law.times()[t]).position - joints.row(t).transpose()).norm() < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("limits hold on a grid ten times as fine, the path is the same, and states belong together") {
+  const Robot robot = nominal_ur10();
+  Random random(1);
+  double worst_stretch = 1.0, worst_share = 0.0, least_share = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const Samples joints = smooth_joints(random, 150);
+    RetimeOptions options = limits(random.uniform(0.3, 3.0), random.uniform(0.5, 5.0));
+    options.acceleration[i % 6] *= 0.3;
+    const Retiming law = retime(robot, joints, options);
+    worst_stretch = std::max(worst_stretch, law.stretch());
+    const double share = largest_share(law, options);
+    worst_share = std::max(worst_share, share);
+    least_share = std::min(least_share, share);
+    Robot limited = robot;
+    limited.limits.velocity = options.velocity;
+    limited.limits.acceleration = options.acceleration;
+    const MotionFigures figures = motion_figures(limited, law.times(), joints);
+    CHECK(worst(figures.speed_ratio).value <= 1.0 + 1e-9);
+    CHECK(worst(figures.acceleration_ratio).value <= 1.0 + 1e-6);
+    for (Eigen::Index t = 0; t < joints.rows(); ++t) {
+      CHECK((law(law.times()[t]).position - joints.row(t).transpose()).norm() < 1e-7);
+    }
+    constexpr double h = 1e-5;
+    for (int k = 1; k < 20; ++k) {
+      const double t = law.duration() * k / 20.0;
+      const Joints difference = (law(t + h).position - law(t - h).position) / (2 * h);
+      CHECK((difference - law(t).velocity).norm() < 1e-4);
+    }
+  }
+  INFO("stretched by up to " << worst_stretch << ", largest share of a limit " << worst_share);
+  CHECK(worst_share <= 1.0 + 1e-9);
+  CHECK(least_share > 0.98);  // some limit is always used up
+  CHECK(worst_stretch < 1.01);
+}
+
+TEST_CASE("where one joint sets the limit, the duration is within 5 % of what it could do alone") {
+  const Robot robot = nominal_ur10();
+  Random random(2);
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const int lead = i % 6;
+    Samples joints = 0.2 * smooth_joints(random, 200);
+    const double distance = random.uniform(0.5, 4.0);
+    for (Eigen::Index t = 0; t < 200; ++t) {
+      const double s = static_cast<double>(t) / 199.0;
+      joints(t, lead) = distance * s * s * (3.0 - 2.0 * s);
+    }
+    RetimeOptions options = limits(20.0, 60.0);
+    options.velocity[lead] = random.uniform(0.5, 2.0);
+    options.acceleration[lead] = random.uniform(0.5, 2.0);
+    const double bound = fastest(distance, options.velocity[lead], options.acceleration[lead]);
+    const Retiming law = retime(robot, joints, options);
+    CHECK(law.duration() >= bound * (1.0 - 1e-6));
+    worst = std::max(worst, law.duration() / bound);
+  }
+  INFO("longest, as a factor of the bound: " << worst);
+  CHECK(worst < 1.05);
+}
+
+TEST_CASE("no slower than the best that dynamic programming finds on a small problem") {
+  // Half a circle of two joints: the speed limits bind on its sides, the accelerations all along.
+  constexpr Eigen::Index T = 61;
+  constexpr double v = 0.8, a = 1.0, radius = 0.7;
+  Samples joints = Samples::Zero(T, 6);
+  for (Eigen::Index t = 0; t < T; ++t) {
+    const double angle = pi * static_cast<double>(t) / (T - 1.0);
+    joints.row(t).head(2) << radius * (1.0 - std::cos(angle)), radius * std::sin(angle);
+  }
+  const Retiming law = retime(nominal_ur10(), joints, limits(v, a));
+
+  // Over the arc length s: q' = (sin, cos), q'' = (cos, -sin) / radius, at angle s / radius.
+  constexpr int N = 120, levels = 400;
+  const double most = v * v * 2.0, step = pi * radius / N;
+  const auto allowed = [&](int i, double x, double u) {
+    const double angle = pi * i / N;
+    const double first[2] = {std::sin(angle), std::cos(angle)};
+    const double second[2] = {std::cos(angle) / radius, -std::sin(angle) / radius};
+    for (int j = 0; j < 2; ++j) {
+      if (std::abs(first[j]) * std::sqrt(x) > v || std::abs(first[j] * u + second[j] * x) > a) return false;
+    }
+    return true;
+  };
+  std::vector<double> left(levels, 1e9);
+  left[0] = 0.0;
+  for (int i = N - 1; i >= 0; --i) {
+    std::vector<double> here(levels, 1e9);
+    for (int k = 0; k < levels; ++k) {
+      for (int m = 0; m < levels; ++m) {
+        const double x = most * k / levels, y = most * m / levels, u = (y - x) / (2.0 * step);
+        if (left[static_cast<std::size_t>(m)] > 1e8 || k + m == 0 || !allowed(i, x, u) || !allowed(i + 1, y, u))
+          continue;
+        const double time = 2.0 * step / (std::sqrt(x) + std::sqrt(y)) + left[static_cast<std::size_t>(m)];
+        here[static_cast<std::size_t>(k)] = std::min(here[static_cast<std::size_t>(k)], time);
+      }
+    }
+    left = here;
+  }
+  INFO("duration " << law.duration() << " s, by dynamic programming " << left[0] << " s");
+  CHECK(law.duration() < left[0] * 1.002);
+  CHECK(law.duration() > left[0] * 0.97);
+}
+
+TEST_CASE("the tool tip keeps its speed limit too") {
+  const Robot robot = nominal_ur10();
+  Samples joints = Samples::Zero(80, 6);
+  for (Eigen::Index t = 0; t < 80; ++t) joints(t, 0) = 2.0 * static_cast<double>(t) / 79.0;
+  RetimeOptions options = limits(2.0, 10.0);
+  options.tool.position << 0.0, 0.0, 0.2;
+  const Vector3 tip = (forward_kinematics(robot, Joints::Zero()) * options.tool).position;
+  const double radius = std::hypot(tip.x(), tip.y());
+  options.tip_speed = 0.5;
+  const Retiming law = retime(robot, joints, options);
+  CHECK(law.duration() == Approx(fastest(2.0, 0.5 / radius, 10.0)).epsilon(1e-5));
+  CHECK(law(0.5 * law.duration()).velocity[0] * radius == Approx(0.5));
+}
+
+TEST_CASE("corners, rests, repeated rows and two rows have times that rise") {
+  const Robot robot = nominal_ur10();
+  const RetimeOptions options = limits(1.0, 2.0);
+  const auto rising = [](const Vector& times) {
+    return (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff() > 0.0;
+  };
+  Samples corner = Samples::Zero(41, 6);
+  for (Eigen::Index t = 0; t < 41; ++t) {
+    corner(t, 0) = 0.02 * static_cast<double>(std::min<Eigen::Index>(t, 20));
+    corner(t, 1) = 0.02 * static_cast<double>(std::max<Eigen::Index>(t, 20) - 20);
+  }
+  const Retiming sharp = retime(robot, corner, options);
+  CHECK(rising(sharp.times()));
+  CHECK(largest_share(sharp, options) <= 1.0 + 1e-9);
+
+  Samples resting(60, 6);
+  for (Eigen::Index t = 0; t < 60; ++t) {  // comes to rest, then stays
+    resting.row(t).setConstant(t < 50 ? 1.0 - std::exp(-0.4 * static_cast<double>(t)) : 1.0);
+  }
+  const Retiming rest = retime(robot, resting, options);
+  CHECK(rising(rest.times()));
+  CHECK(largest_share(rest, options) <= 1.0 + 1e-9);
+  CHECK(rest.duration() == Approx(fastest(1.0, 1.0, 2.0)).epsilon(1e-3));
+
+  CHECK(rising(retime(robot, Samples::Constant(5, 6, 0.3), options).times()));
+  Samples two = Samples::Zero(2, 6);
+  two(1, 3) = 1.0;
+  CHECK(retime(robot, two, options).duration() == Approx(fastest(1.0, 1.0, 2.0)).epsilon(1e-5));
+}
+
+TEST_CASE("paths and limits that cannot be are refused") {
+  const Robot robot = nominal_ur10();
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(1, 6), limits(1.0, 1.0)), DataError);
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 5), limits(1.0, 1.0)), DataError);
+  CHECK_THROWS_AS(retime(robot, Samples::Constant(5, 6, std::nan("")), limits(1.0, 1.0)), DataError);
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(0.0, 1.0)), UsageError);
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(1.0, -1.0)), UsageError);
+}
