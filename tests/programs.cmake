@@ -38,3 +38,11 @@ add_test(NAME "study: hyperparameters"
          WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
 
 add_test(NAME "layers" COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh ${CMAKE_SOURCE_DIR})
+
+# Experiment B on one scene of each kind: the skill's motions are judged, and clear.
+add_test(NAME "study: scenes"
+         COMMAND ${CMAKE_COMMAND} -E env LFD_BUILD_DIR=${CMAKE_BINARY_DIR} LFD_ONE_WAY=1 LFD_TWO_WAYS=1
+                 LFD_OUT_DIR=${CMAKE_CURRENT_BINARY_DIR}/study
+                 sh ${CMAKE_SOURCE_DIR}/share/lfdtools/peg-in-hole/scenes/run.sh)
+set_tests_properties("study: scenes" PROPERTIES TIMEOUT 300
+                     PASS_REGULAR_EXPRESSION "round: 1 scenes.*\nskill +100[.]0 .*round: 1 scenes.*results: ")

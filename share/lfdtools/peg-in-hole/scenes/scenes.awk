@@ -1,0 +1,73 @@
+# Table of run.sh. Intervals are Wilson's, 95 %, over scenes where a scene counts whole, and over motions, of which the
+# four of a scene are not independent, elsewhere.
+BEGIN { FS = ","; z = 1.959964 }
+NR == 1 { next }
+$5 == "set_aside" { aside[$2 "," $6]++; asides[$6] = 1; next }
+{
+  key = $2 "," $3
+  if (!(($3) in known)) { known[$3] = 1; methods[++count] = $3 }
+  motions[key]++
+  outcome[key "," $5]++
+  hand[key] += $9
+  jerk[key] += $11
+  outside[key] += $8 > 0.001
+  if ($5 != "refused") { joint[key] += $10; judged[key]++ }
+  seconds[key] += $12
+  scene = key "," $1
+  if (!(scene in of_scene)) scenes[key]++
+  of_scene[scene] += $5 == "clear"
+  if (of_scene[scene] == 4) whole[key]++
+  if ($3 == "skill" && $13 != "") {
+    told[$2] += $13; told_count[$2]++; touched[$2] += $5 == "collided"
+    bin = $13 < 0.01 ? 1 : $13 < 0.1 ? 2 : 3
+    bin_told[bin] += $13; bin_count[bin]++; bin_touched[bin] += $5 == "collided"
+  }
+  motion = $2 "," $1 "," $4
+  clear[motion "," $3] = $5 == "clear"
+  if ($3 == "skill") { all_motions[++motion_count] = motion; ways_of[motion] = $2; scene_of[motion] = $1 }
+}
+function wilson(k, n,   p, middle, half) {
+  if (n == 0) return "-"
+  p = k / n
+  middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+  half = z / (1 + z * z / n) * sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+  return sprintf("%5.1f (%.1f to %.1f)", 100 * p, 100 * (middle - half < 0 ? 0 : middle - half), 100 * (middle + half > 1 ? 1 : middle + half))
+}
+END {
+  for (ways = 1; ways <= 2; ++ways) {
+    if (scenes[ways ",skill"] == 0) continue
+    printf "%s: %d scenes; set aside:", ways == 1 ? "one way round" : "two ways round", scenes[ways ",skill"]
+    for (reason in asides) printf " %d %s", aside[ways "," reason], reason
+    printf "\n%-22s %-22s %-22s %-22s %7s %7s %7s %7s %8s\n", "percent", "all four clear", "collided", "refused", "outside", "hand m", "rad", "jerk", "s"
+    for (m = 1; m <= count; ++m) {
+      key = ways "," methods[m]
+      n = motions[key]
+      if (n == 0) continue
+      printf "%-22s %-22s %-22s %-22s %7.1f %7.2f %7.2f %7.1f %8.4f\n", methods[m], wilson(whole[key], scenes[key]), wilson(outcome[key ",collided"], n), wilson(outcome[key ",refused"], n), 100 * outside[key] / n, hand[key] / n, judged[key] ? joint[key] / judged[key] : 0, jerk[key] / n, seconds[key] / n
+    }
+    # The opponent that clears most motions, and by how many of a scene's four the skill clears more: mean and normal
+    # interval over scenes.
+    best = ""
+    for (m = 1; m <= count; ++m) {
+      name = methods[m]
+      if (name ~ /^skill/ || name == "rrt-connect" || name == "prm") continue
+      if (best == "" || outcome[ways "," name ",clear"] > outcome[ways "," best ",clear"]) best = name
+    }
+    delete gain
+    n = 0
+    for (i = 1; i <= motion_count; ++i) {
+      motion = all_motions[i]
+      if (ways_of[motion] != ways) continue
+      if (!(scene_of[motion] in gain)) { ++n; gain[scene_of[motion]] = 0 }
+      gain[scene_of[motion]] += (clear[motion ",skill"] - clear[motion "," best]) / 4
+    }
+    sum = 0; squares = 0
+    for (s in gain) { sum += gain[s]; squares += gain[s] ^ 2 }
+    mean = sum / n
+    sd = n > 1 ? sqrt((squares - n * mean * mean) / (n - 1)) : 0
+    printf "share of motions that the skill clears, less that of the best opponent (%s): %.1f points (%.1f to %.1f)\n\n", best, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
+  }
+  split("under 0.01,0.01 to 0.1,over 0.1", names, ",")
+  printf "probability of touching of the skill's motions, and how many collided\n"
+  for (bin = 1; bin <= 3; ++bin) if (bin_count[bin]) printf "%-12s %4d motions, mean told %.4f, collided %s %%\n", names[bin], bin_count[bin], bin_told[bin] / bin_count[bin], wilson(bin_touched[bin], bin_count[bin])
+}
