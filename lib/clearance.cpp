@@ -167,7 +167,7 @@ class Search {
   Search(const ArmClearance& arm, double tolerance, bool self) : arm_(arm), tolerance_(tolerance), self_(self) {}
 
   double look_at(const Joints& q, Eigen::Index sample, double share) {
-    const double d = self_ ? std::min(arm_.least(q), arm_.least_of_arm_itself(q)) : arm_.least(q);
+    const double d = self_ ? arm_.least_of_arm_itself(q) : arm_.least(q);
     if (d < best_.distance) {
       best_.distance = d;
       best_.sample = sample;
@@ -188,14 +188,12 @@ class Search {
     look_between(q, to, sample, share, high);
   }
 
+  [[nodiscard]] bool nothing() const { return best_.distance == nothing_near; }
+
   [[nodiscard]] ClosestApproach result() const {
     ClosestApproach closest = best_;
-    if (closest.distance == nothing_near) return closest;
-    auto all = arm_.pairs(at_);
-    if (self_) {
-      const auto own = arm_.pairs_of_arm_itself(at_);
-      all.insert(all.end(), own.begin(), own.end());
-    }
+    if (nothing()) return closest;
+    const auto all = self_ ? arm_.pairs_of_arm_itself(at_) : arm_.pairs(at_);
     closest.pair = *std::min_element(all.begin(), all.end(), nearer);
     return closest;
   }
@@ -208,20 +206,28 @@ class Search {
   Joints at_ = Joints::Zero();
 };
 
-}  // namespace
-
-ClosestApproach closest_approach(const ArmClearance& arm, const Samples& joints, double tolerance, bool self) {
+ClosestApproach search(const ArmClearance& arm, const Samples& joints, double tolerance, bool self) {
   if (joints.rows() < 1 || joints.cols() != 6 || !(tolerance > 0)) {
     throw DataError("clearance.shape", "the joint path needs a sample, six columns and a tolerance over 0");
   }
   if (!joints.allFinite()) throw DataError("clearance.not_finite", "the joint path has a value that is not finite");
   Search search(arm, tolerance, self);
-  if (arm.solids().empty() && !self) return search.result();
   for (Eigen::Index k = 0; k < joints.rows(); ++k) (void)search.look_at(joints.row(k).transpose(), k, 0.0);
+  if (search.nothing()) return search.result();
   for (Eigen::Index k = 0; k + 1 < joints.rows(); ++k) {
     search.look_between(joints.row(k).transpose(), joints.row(k + 1).transpose(), k, 0.0, 1.0);
   }
   return search.result();
+}
+
+}  // namespace
+
+ClosestApproach closest_approach(const ArmClearance& arm, const Samples& joints, double tolerance) {
+  return search(arm, joints, tolerance, false);
+}
+
+ClosestApproach closest_approach_of_arm_itself(const ArmClearance& arm, const Samples& joints, double tolerance) {
+  return search(arm, joints, tolerance, true);
 }
 
 }  // namespace lfd

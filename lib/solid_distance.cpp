@@ -133,7 +133,7 @@ Separation axis_to_box(const Vector3& from, const Vector3& along, const Vector3&
 // Cylinder, in its own frame: radius R, half length H.
 
 Vector3 excess(const Vector3& p, double R, double H) {
-  const double rho = std::hypot(p[0], p[1]);
+  const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
   const double out = rho > R ? (rho - R) / rho : 0.0;
   return {out * p[0], out * p[1], excess(p[2], H)};
 }
@@ -229,7 +229,7 @@ Separation axis_to_cylinder(const Vector3& from, const Vector3& along, double R,
     const Vector3 away = excess(p, R, H);
     const double slope = away.dot(along);
     (slope < 0 ? low : high) = t;
-    const double rho = std::hypot(p[0], p[1]);
+    const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
     double curvature = away[2] != 0 ? along[2] * along[2] : 0.0;
     if (rho > R) {
       const double radial = p.head<2>().dot(along.head<2>()) / rho;

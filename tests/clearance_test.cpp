@@ -203,11 +203,13 @@ TEST_CASE("the closest approach is within its tolerance of a dense search") {
       for (int k = 0; k < 2; ++k) {
         for (int s = 0; s <= 2000; ++s) {
           const Joints q = (joints.row(k) + s / 2000.0 * (joints.row(k + 1) - joints.row(k))).transpose();
-          dense = std::min(dense, arm.least(q));
-          if (self) dense = std::min(dense, arm.least_of_arm_itself(q));
+          dense = std::min(dense, self ? arm.least_of_arm_itself(q) : arm.least(q));
         }
       }
-      const double found = closest_approach(arm, joints, 1e-4, self).distance;
+      const ClosestApproach closest =
+          self ? closest_approach_of_arm_itself(arm, joints, 1e-4) : closest_approach(arm, joints, 1e-4);
+      const double found = closest.distance;
+      CHECK(closest.pair.distance == found);
       CHECK(found <= dense + 1e-4);
       CHECK(found >= dense - 2e-3);
     }

@@ -3,7 +3,7 @@
 set(LFD_PROGRAM_FOLDER ${CMAKE_BINARY_DIR}/tools)
 
 foreach(program IN ITEMS demo-synth demo-align gmm-fit gmr-regress dmp-fit mvgpr-train skill-generate skill-validate
-                         ur10-ik ur10-fk motion-compare skill-plot)
+                         ur10-ik ur10-fk arm-clearance motion-compare skill-plot)
   add_test(NAME "cases: ${program}"
            COMMAND ${CMAKE_COMMAND} -E env "PATH=${LFD_PROGRAM_FOLDER}:$ENV{PATH}"
                    sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/run-cases.sh ${program})

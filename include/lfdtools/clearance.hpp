@@ -25,10 +25,10 @@ struct LinkClearance {
 
 /// An arm among solids.
 ///
-/// Links of frame 0 never move: they are bodies that other links may touch, and do not count against the solids. A solid
-/// that they overlap is what the arm stands on; links of frame 1, which only turn on the spot, do not count against it.
-/// Of the arm itself, pairs whose frames are the same or neighbours are left aside: they meet at a joint, where
-/// their capsules always overlap.
+/// Links of frame 0 never move: they are bodies that other links may touch, and do not count against the solids. A
+/// solid that they overlap is what the arm stands on; links of frame 1, which only turn on the spot, do not count
+/// against it. Of the arm itself, pairs whose frames are the same or neighbours are left aside: they meet at a joint,
+/// where their capsules always overlap.
 class ArmClearance {
  public:
   /// @param solids_in_base  as Scene::in_base gives them   @param tool  one more link
@@ -80,12 +80,15 @@ struct ClosestApproach {
   LinkClearance pair;       ///< which link, which obstacle
 };
 
-/// The least distance along a joint path, every joint going straight from sample to sample: also an obstacle thinner
-/// than a step is found. Intervals are halved until no point of the arm can come more than `tolerance` closer than the
-/// least distance found.
-/// @param joints  T x 6 [rad], T >= 1   @param tolerance  over 0 [m]   @param self  the arm itself counts too
+/// The least distance from the solids along a joint path, every joint going straight from sample to sample: also an
+/// obstacle thinner than a step is found. Intervals are halved until no point of the arm can come more than `tolerance`
+/// closer than the least distance found.
+/// @param joints  T x 6 [rad], T >= 1   @param tolerance  over 0 [m]
 /// @throws DataError [clearance.shape], [clearance.not_finite]
-[[nodiscard]] ClosestApproach closest_approach(const ArmClearance& arm, const Samples& joints, double tolerance = 1e-3,
-                                               bool self = false);
+[[nodiscard]] ClosestApproach closest_approach(const ArmClearance& arm, const Samples& joints, double tolerance = 1e-3);
+
+/// The same of the arm's own pairs.
+[[nodiscard]] ClosestApproach closest_approach_of_arm_itself(const ArmClearance& arm, const Samples& joints,
+                                                             double tolerance = 1e-3);
 
 }  // namespace lfd

@@ -3,11 +3,51 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/io/json_writer.hpp"
 
 namespace lfd {
+
+CovarianceFile read_covariance(const JsonDocument& document) {
+  CovarianceFile file;
+  file.header = read_header(document, "lfdtools.covariance");
+  const JsonView root = document.root();
+  root.only({"format", "version", "columns", "target", "demo", "teacher", "spread", "degrees_of_freedom", "t", "mean",
+             "covariance", "provenance"});
+  const std::string spread = root.at("spread").string();
+  if (spread != "latent" && spread != "predictive") {
+    root.at("spread").fail("covariance.spread", "the spread is latent or predictive");
+  }
+  file.spread = spread == "latent" ? Spread::latent : Spread::predictive;
+  const auto D = static_cast<Eigen::Index>(file.header.columns.size());
+  const JsonView freedom = root.at("degrees_of_freedom");
+  file.degrees_of_freedom = Vector::Constant(D, std::numeric_limits<double>::infinity());
+  if (freedom.size() != file.header.columns.size()) freedom.fail("json.wrong_length", "there must be one a column");
+  for (Eigen::Index a = 0; a < D; ++a) {
+    const JsonView value = freedom.at(static_cast<std::size_t>(a));
+    if (!value.is_null()) file.degrees_of_freedom[a] = value.positive();
+  }
+  file.times = root.at("t").vector();
+  const Eigen::Index T = file.times.size();
+  for (Eigen::Index k = 1; k < T; ++k) {
+    if (!(file.times[k] > file.times[k - 1])) {
+      root.at("t").at(static_cast<std::size_t>(k)).fail("covariance.time_not_rising", "the times do not rise");
+    }
+  }
+  file.mean = root.at("mean").matrix(T, D);
+  const JsonView covariance = root.at("covariance");
+  if (covariance.size() > 0 && covariance.at(0).size() > 0 && covariance.at(0).at(0).is_array()) {
+    if (covariance.size() != file.header.columns.size()) {
+      covariance.fail("json.wrong_length", "there must be one matrix a column");
+    }
+    for (std::size_t a = 0; a < covariance.size(); ++a) file.covariance.push_back(covariance.at(a).matrix(T, T));
+  } else {
+    file.covariance.push_back(covariance.matrix(D * T, D * T));
+  }
+  return file;
+}
 
 void write_covariance(const CovarianceFile& file, Output& out) {
   double numbers = 0;

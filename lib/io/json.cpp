@@ -43,7 +43,7 @@ const char* reader_of(std::string_view format) {
       {"lfdtools.scene", "arm-clearance --scene"},
       {"lfdtools.robot", "ur10-ik --robot"},
       {"lfdtools.transform", "skill-generate --camera"},
-      {"lfdtools.covariance", "no program (skill-info shows it)"},
+      {"lfdtools.covariance", "arm-clearance --covariance"},
   };
   for (const auto& [name, programs] : readers) {
     if (name == format) return programs;

@@ -1,5 +1,7 @@
 #include "lfdtools/io/robot_file.hpp"
 
+#include <algorithm>
+
 #include "json_check.hpp"
 #include "lfdtools/io/input.hpp"
 #include "lfdtools/io/json_writer.hpp"
@@ -113,6 +115,15 @@ Robot load_robot(const std::string& path, Messages& messages, bool strict) {
   options.fault = Fault::config;
   options.strict = strict;
   return read_robot(read_json(path, messages, options));
+}
+
+Robot load_robot_with_links(const std::string& path, Messages& messages, bool strict) {
+  Robot robot = load_robot(path, messages, strict);
+  if (std::none_of(robot.links.begin(), robot.links.end(), [](const Capsule& link) { return link.frame > 0; })) {
+    throw ConfigError("robot.no_links", "the robot file has no links that move, so there is no body to keep clear",
+                      {path, 0, 0, "/links"});
+  }
+  return robot;
 }
 
 void write_robot(const Robot& robot, Output& out) {

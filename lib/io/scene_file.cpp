@@ -73,4 +73,11 @@ Scene read_scene(const JsonDocument& document) {
   return scene;
 }
 
+Scene load_scene(const std::string& path, Messages& messages, bool strict) {
+  JsonOptions options;
+  options.fault = Fault::config;
+  options.strict = strict;
+  return read_scene(read_json(path, messages, options));
+}
+
 }  // namespace lfd

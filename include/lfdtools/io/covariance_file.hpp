@@ -16,6 +16,10 @@ struct CovarianceFile {
   std::vector<Matrix> covariance;  ///< D of T x T, or one D T x D T, by signal, then by time [m^2]
 };
 
+/// @throws as read_header and JsonView; [json.wrong_length] where mean or covariance do not fit columns and times,
+///         [covariance.time_not_rising]
+[[nodiscard]] CovarianceFile read_covariance(const JsonDocument& document);
+
 /// One line.
 /// @throws DataError [covariance.too_large] over 2 10^7 numbers: a larger time step makes fewer
 void write_covariance(const CovarianceFile& file, Output& out);

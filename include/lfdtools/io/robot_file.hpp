@@ -18,6 +18,10 @@ namespace lfd {
 ///         [robot.unknown_model], [robot.too_long]; [robot.no_yaml], [robot.no_urdf] where it was built without them
 [[nodiscard]] Robot load_robot(const std::string& path, Messages& messages, bool strict = false);
 
+/// The robot of a file, for programs that need its body.
+/// @throws as load_robot; ConfigError [robot.no_links] unless a link moves
+[[nodiscard]] Robot load_robot_with_links(const std::string& path, Messages& messages, bool strict = false);
+
 /// One line.
 void write_robot(const Robot& robot, Output& out);
 

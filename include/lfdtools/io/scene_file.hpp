@@ -10,4 +10,8 @@ namespace lfd {
 /// @throws as JsonView; [scene.frame], [scene.type] for words that are not known, [rotation.not_unit]
 [[nodiscard]] Scene read_scene(const JsonDocument& document);
 
+/// The scene of a file.
+/// @throws as Input, JsonStream::next (ConfigError) and read_scene
+[[nodiscard]] Scene load_scene(const std::string& path, Messages& messages, bool strict = false);
+
 }  // namespace lfd

@@ -1,0 +1,267 @@
+#include "lfdtools/cli/clearance_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lfdtools/io/covariance_file.hpp"
+#include "lfdtools/io/data_files.hpp"
+#include "lfdtools/io/labelled_table.hpp"
+#include "lfdtools/io/robot_file.hpp"
+#include "lfdtools/io/scene_file.hpp"
+#include "lfdtools/touching.hpp"
+
+namespace lfd::cli {
+namespace {
+
+// The least distance along a path is found to this [m].
+constexpr double tolerance = 1e-4;
+// A covariance whose mean is further from the joints' hand than this belongs to another tool, frame or motion [m].
+constexpr double same_path = 1e-3;
+
+const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
+const std::vector<std::string> position_names = {"x", "y", "z"};
+
+/// The tool tip at every sample, in the base.
+Samples tips(const Robot& robot, const Samples& joints, const Pose& tool) {
+  Samples positions(joints.rows(), 3);
+  for (Eigen::Index k = 0; k < joints.rows(); ++k) {
+    positions.row(k) = (forward_kinematics(robot, joints.row(k).transpose()) * tool).position.transpose();
+  }
+  return positions;
+}
+
+/// Share of the way that the tip has covered, 0 at the first sample and 1 at the last.
+Vector share_of_way(const Samples& positions) {
+  Vector way = Vector::Zero(positions.rows());
+  for (Eigen::Index k = 1; k < way.size(); ++k) {
+    way[k] = way[k - 1] + (positions.row(k) - positions.row(k - 1)).norm();
+  }
+  const double whole = way[way.size() - 1];
+  return whole > 0 ? Vector(way / whole) : Vector(Vector::Ones(way.size()));
+}
+
+/// The spread of one path, and what it is checked against.
+class Spreads {
+ public:
+  Spreads(const ClearanceRequest& request, const Robot& robot, Run& run)
+      : request_(request), robot_(robot), run_(run), frame_(frame_in_base(robot, request.pose.frame)) {
+    if (request.covariance.empty()) return;
+    std::vector<Input> inputs;
+    inputs.push_back(Input(request.covariance));
+    JsonStream stream(std::move(inputs), run.messages(), run.json_options());
+    while (const auto document = stream.next()) {
+      files_.push_back(read_covariance(*document));
+      if (files_.back().header.columns != position_names) {
+        document->root().at("columns").fail("clearance.covariance_columns", "the signals must be x, y, z");
+      }
+    }
+  }
+
+  [[nodiscard]] HandSpread of(const Recording& recording, const Samples& positions) const {
+    HandSpread spread;
+    if (!files_.empty()) {
+      const CovarianceFile& file = file_of(recording, positions);
+      try {
+        spread = hand_spread(file.covariance, frame_.rotation);
+      } catch (const DataError& error) {
+        throw DataError(error.id(), error.what(), {request_.covariance, 0, 0, "/covariance"});
+      }
+    }
+    if (!request_.goal_sd) return spread;
+    const auto& sd = *request_.goal_sd;
+    const Vector3 each = sd.size() == 1 ? Vector3(Vector3::Constant(sd[0])) : Vector3(sd[0], sd[1], sd[2]);
+    HandSpread shift = with_shift({}, each, share_of_way(positions));
+    for (Eigen::Index k = 0; k < shift.samples(); ++k) {
+      shift.factor.middleRows(3 * k, 3) = (frame_.rotation * shift.factor.middleRows(3 * k, 3)).eval();
+    }
+    if (files_.empty()) return shift;
+    HandSpread both{Matrix(shift.factor.rows(), spread.factor.cols() + 3)};
+    both.factor << spread.factor, shift.factor;
+    return both;
+  }
+
+ private:
+  const CovarianceFile& file_of(const Recording& recording, const Samples& positions) const {
+    const auto& target = recording.demonstration.labels.target;
+    const auto found = std::find_if(files_.begin(), files_.end(), [&](const CovarianceFile& file) {
+      return file.header.labels.target == target || (files_.size() == 1 && !(file.header.labels.target && target));
+    });
+    if (found == files_.end()) {
+      throw DataError("clearance.covariance_target",
+                      fmt::format("{} has no covariance for target {}", request_.covariance, target.value_or("(none)")),
+                      recording.place(0));
+    }
+    const Vector& times = recording.demonstration.trajectory.times;
+    if (found->times.size() != times.size() || !((found->times - times).cwiseAbs().maxCoeff() < 1e-6)) {
+      throw DataError("clearance.covariance_times",
+                      fmt::format("{} is of {} samples, the joints have {}, or their times differ", request_.covariance,
+                                  found->times.size(), times.size()),
+                      recording.place(0));
+    }
+    const Samples mean = (found->mean * frame_.rotation.transpose()).rowwise() + frame_.position.transpose();
+    Eigen::Index sample = 0;
+    const double off = (mean - positions).rowwise().norm().maxCoeff(&sample);
+    if (off > same_path) {
+      run_.messages().warning(
+          "clearance.mean_differs",
+          fmt::format("the hand is {:.1f} mm from the covariance's motion: another --tool or --frame?", 1e3 * off),
+          recording.place(sample));
+    }
+    return *found;
+  }
+
+  const ClearanceRequest& request_;
+  const Robot& robot_;
+  Run& run_;
+  Pose frame_;
+  std::vector<CovarianceFile> files_;
+};
+
+std::string millimetres(double distance) {
+  return distance < 0 ? fmt::format("{:.1f} mm inside", -1e3 * distance)
+                      : fmt::format("{:.1f} mm from", 1e3 * distance);
+}
+
+/// Refuses a path that comes too close. @param margin  [m]
+void judge(std::string_view gate, double margin, const ArmClearance& arm, const ClosestApproach& closest,
+           const Recording& recording, Run& run) {
+  if (!std::isfinite(closest.distance)) return;
+  const std::string labels = describe(recording.demonstration.labels);
+  const std::string text =
+      fmt::format("{}{}link {} is {} {}{}", labels, labels.empty() ? "" : ": ",
+                  arm.bodies()[static_cast<std::size_t>(closest.pair.link)].name, millimetres(closest.distance),
+                  arm.obstacle_name(closest.pair.obstacle), closest.share > 0 ? " on the way to the next sample" : "");
+  if (closest.distance < margin) {
+    run.refuse(gate, fmt::format("{}, under {:g} mm", text, 1e3 * margin), recording.place(closest.sample));
+  }
+  run.detail(fmt::format("clearance.{}", gate == "clearance" ? "closest" : "closest_self"), text);
+}
+
+/// A row a link: its closest solid, or, where the arm itself counts, its closest neighbour in either.
+std::vector<LinkClearance> rows_of(const ArmClearance& arm, const Joints& q, bool self) {
+  std::vector<LinkClearance> rows = arm.links(q);
+  if (!self) return rows;
+  std::vector<LinkClearance> closest;
+  for (const auto& list : {rows, arm.pairs_of_arm_itself(q)}) {
+    for (const LinkClearance& pair : list) {
+      const auto known = std::find_if(closest.begin(), closest.end(),
+                                      [&](const LinkClearance& other) { return other.link == pair.link; });
+      if (known == closest.end()) {
+        closest.push_back(pair);
+      } else if (pair.distance < known->distance) {
+        *known = pair;
+      }
+    }
+  }
+  std::sort(closest.begin(), closest.end(), [](const auto& a, const auto& b) { return a.link < b.link; });
+  return closest;
+}
+
+}  // namespace
+
+void declare_clearance(Program& program, ClearanceRequest& request) {
+  program.reads("joints CSV with q1..q6").uses_seed();
+  program.text("--scene", request.scene, "scene file, by name or path");
+  program.text("--robot", request.robot, "robot file with links, by name or path");
+  program.flag("--self", request.self, "the arm's own links count as obstacles too");
+  program.number("--margin", request.margin, not_negative, "least distance from an obstacle that passes [m]");
+  program.numbers("--tool", request.pose.tool, {3, 7},
+                  "pose of the tool tip in the flange frame, x,y,z[,w,x,y,z]: one more link");
+  program.number("--tool-radius", request.tool_radius, positive, "radius of that link [m]");
+  program.path("--covariance", request.covariance,
+               "how far the hand may be off, as skill-generate --covariance writes it: add a column probability");
+  program.numbers("--goal-sd", request.goal_sd, {1, 3}, "standard deviation of the goal, one or x,y,z [m]: the same");
+  program.text("--frame", request.pose.frame,
+               "frame of covariance and goal: base, base_link, or one of the robot file's");
+  program.number("--max-probability", request.max_probability, Range<double>{0.0, 1.0},
+                 "largest probability that the path touches anything");
+  program.gate("clearance", "a link closer than --margin to an obstacle, at a sample or between two")
+      .gate("self_clearance", "with --self: a link inside another of the arm's")
+      .gate("probability", "the path touches with more than --max-probability, where that is given");
+  program.check([&program, &request] {
+    if (request.scene.empty() && !request.self) {
+      throw UsageError("usage.missing", "there is nothing to keep clear of: give --scene, --self, or both");
+    }
+    if (program.given("--tool-radius") && !request.pose.tool) {
+      throw UsageError("usage.missing", "--tool-radius needs --tool");
+    }
+    if (request.max_probability && !request.asks_probability()) {
+      throw UsageError("usage.missing", "--max-probability needs --covariance or --goal-sd");
+    }
+    if (request.goal_sd &&
+        std::any_of(request.goal_sd->begin(), request.goal_sd->end(), [](double sd) { return sd < 0; })) {
+      throw UsageError("usage.value", "--goal-sd: a standard deviation is not negative");
+    }
+    (void)tool_pose(request.pose);
+  });
+  program.example("arm-clearance --scene table joints.csv -o clearance.csv", "every link's distance from the table");
+  program.example("ur10-ik --rpy -1.5708,0,0 motions.csv | arm-clearance --scene cell.json --self --margin 0.02",
+                  "refused if anything comes closer than 2 cm");
+  program.example("arm-clearance --scene cell.json --covariance spread.json --max-probability 0.001 joints.csv",
+                  "with the chance that the arm touches");
+}
+
+void report_clearance(const ClearanceRequest& request, Run& run) {
+  Robot robot = load_robot_with_links(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
+  Scene scene;
+  if (!request.scene.empty()) {
+    scene = load_scene(find_data_file(request.scene, "scenes"), run.messages(), run.options().strict);
+  }
+  const Pose tool = tool_pose(request.pose);
+  std::optional<Capsule> held;
+  if (request.pose.tool) held = tool_capsule(tool, request.tool_radius);
+  const ArmClearance arm(std::move(robot), scene.in_base(), held);
+  const Spreads spreads(request, arm.robot(), run);
+
+  DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
+                             {.columns = joint_names, .extras = {}, .min_samples = 1});
+  std::vector<std::string> columns = {"t", "link", "obstacle", "distance"};
+  if (request.asks_probability()) columns.emplace_back("probability");
+  LabelledTable table(run.output(), columns);
+  double least = std::numeric_limits<double>::infinity(), least_of_itself = least;
+  for (std::size_t i = 0; i < source.recordings(); ++i) {
+    const Recording recording = source.recording(i);
+    const Trajectory& path = recording.demonstration.trajectory;
+    const ClosestApproach closest = closest_approach(arm, path.positions, tolerance);
+    judge("clearance", request.margin, arm, closest, recording, run);
+    least = std::min(least, closest.distance);
+    if (request.self) {
+      const ClosestApproach own = closest_approach_of_arm_itself(arm, path.positions, tolerance);
+      judge("self_clearance", 0.0, arm, own, recording, run);
+      least_of_itself = std::min(least_of_itself, own.distance);
+    }
+    Touching chances;
+    if (request.asks_probability()) {
+      const HandSpread spread = spreads.of(recording, tips(arm.robot(), path.positions, tool));
+      chances = touching(arm, path.positions, spread, tool, {.self = request.self, .seed = run.seed()});
+      const std::string text = fmt::format(
+          "{}the path touches with probability {:.3g}, computed to {:.1g}",
+          describe(recording.demonstration.labels).empty() ? "" : describe(recording.demonstration.labels) + ": ",
+          chances.path.probability, chances.path.error);
+      if (request.max_probability && chances.path.probability > *request.max_probability) {
+        run.refuse("probability", fmt::format("{}, over {:g}", text, *request.max_probability), recording.place(0));
+      }
+      run.detail("clearance.probability", text);
+      run.figure("path_probability", chances.path.probability);
+    }
+    CsvWriter& writer = table.begin(recording.demonstration.labels);
+    for (Eigen::Index k = 0; k < path.samples(); ++k) {
+      for (const LinkClearance& row : rows_of(arm, path.positions.row(k).transpose(), request.self)) {
+        writer.labels(recording.demonstration.labels);
+        writer.number(path.times[k]);
+        writer.text(arm.bodies()[static_cast<std::size_t>(row.link)].name);
+        writer.text(arm.obstacle_name(row.obstacle));
+        writer.number(row.distance);
+        if (request.asks_probability()) writer.number(chances.samples[static_cast<std::size_t>(k)].probability);
+        writer.end_row();
+      }
+    }
+  }
+  if (std::isfinite(least)) run.figure("least_distance", least);
+  if (std::isfinite(least_of_itself)) run.figure("least_distance_self", least_of_itself);
+}
+
+}  // namespace lfd::cli
