@@ -13,7 +13,11 @@
 namespace lfd {
 namespace {
 
+using retiming::Interval;
+using retiming::Slope;
+
 constexpr double least_knot_distance = 1e-4;  // [rad]
+constexpr std::size_t least_rows = 50;        // whose spline is the motion
 constexpr double least_period = 1e-6;         // between rows that the path does not tell apart [s]
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -74,20 +78,21 @@ class Retiming::Solver {
     choose_knots();
     lay_grid();
     measure_slopes();
+    const bool of_rows = options_.of_rows && rows_.size() >= least_rows;
     Retiming best;
     share_.assign(law_.points_.size(), 1.0);
-    for (int iteration = 0; iteration < (options_.of_rows ? most_iterations : 1); ++iteration) {
+    for (int iteration = 0; iteration < (of_rows ? most_iterations : 1); ++iteration) {
       pass();
       law_.stretch_ = 1.0;
       double excess = excess_between();
-      const Vector of_rows = options_.of_rows ? excess_of_rows() : Vector();
-      if (options_.of_rows) excess = std::max(excess, of_rows.maxCoeff());
+      const Vector rows = of_rows ? excess_of_rows() : Vector();
+      if (of_rows) excess = std::max(excess, rows.maxCoeff());
       // Between two points of the finer grid a limit is passed by less than the millionth.
       law_.stretch_ = excess > 1.0 ? excess * (1.0 + 1e-6) : 1.0;
       const auto stretched = [](const Retiming& law) { return law.points_.back().t * law.stretch_; };
       if (iteration == 0 || stretched(law_) < stretched(best)) best = law_;
-      if (excess < 1.002 || !options_.of_rows) break;
-      spread(of_rows);
+      if (excess < 1.002 || !of_rows) break;
+      spread(rows);
     }
     set_times(best);
     return best;

@@ -9,7 +9,7 @@
 
 #include "lfdtools/dh.hpp"
 
-namespace lfd {
+namespace lfd::retiming {
 
 /// First and second derivative of the path at a grid point, and the largest (ds/dt)^2 that the speed limits allow.
 struct Slope {
@@ -85,4 +85,4 @@ class Interval {
   std::size_t count_ = 0;
 };
 
-}  // namespace lfd
+}  // namespace lfd::retiming
