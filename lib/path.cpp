@@ -265,7 +265,8 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
   if (path.status == PathStatus::jump && kept.status == PathStatus::jump) return kept;
   path.status = PathStatus::other_branch;
   path.sample = kept.sample;
-  path.reason = fmt::format("the posture {} cannot be kept: {}", branch_name(*options.branch), kept.reason);
+  path.reason = fmt::format("the posture {} cannot be kept: {}; there is a path in {}", branch_name(*options.branch),
+                            kept.reason, branch_name(path.branch.front()));
   return path;
 }
 

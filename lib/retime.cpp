@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/interpolation.hpp"
+#include "retime_interval.hpp"
 
 namespace lfd {
 namespace {
 
+using retiming::Interval;
+using retiming::Slope;
+
 constexpr double least_knot_distance = 1e-4;  // [rad]
+constexpr std::size_t least_rows = 50;        // whose spline is the motion
 constexpr double least_period = 1e-6;         // between rows that the path does not tell apart [s]
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -31,80 +34,6 @@ void check(const Samples& joints, const RetimeOptions& options) {
   }
   if (!joints.allFinite()) throw DataError("retime.not_finite", "a joint path has a value that is not a finite number");
 }
-
-/// First and second derivative of the path at a grid point, and the largest (ds/dt)^2 that the speed limits allow.
-struct Slope {
-  Joints first, second;
-  double most = infinity;
-};
-
-/// a x + b y <= c
-struct HalfPlane {
-  double a, b, c;
-};
-
-/// One grid interval of length `step`: x = (ds/dt)^2 where it begins, y where it ends, (y - x) / (2 step) the
-/// acceleration of s along it.
-class Interval {
- public:
-  Interval(const Slope& begin, const Slope& end, const Joints& acceleration, double step) {
-    for (int j = 0; j < 6; ++j) {
-      const double limit = acceleration[j];
-      const double p = begin.first[j] / (2.0 * step), r = end.first[j] / (2.0 * step);
-      add(begin.second[j] - p, p, limit);
-      add(-r, r + end.second[j], limit);
-    }
-  }
-
-  /// The largest x <= most_x from which some y in [0, most_y] can be reached. The feasible y are those from the highest
-  /// of some lines up to the lowest of others, a gap concave in x and not negative at 0: Newton steps from above end at
-  /// the edge after a few lines.
-  [[nodiscard]] double largest_begin(double most_x, double most_y) const {
-    double x = most_x;
-    for (const HalfPlane& h : planes_) {
-      if (h.b == 0.0 && h.a > 0.0) x = std::min(x, h.c / h.a);
-    }
-    for (int iteration = 0; iteration < 100; ++iteration) {
-      const auto [low, high] = ends(x, most_y);
-      if (low.value <= high.value) return x;
-      const double next = x - (low.value - high.value) / (low.slope - high.slope);
-      if (!(next < x)) break;
-      x = std::max(0.0, next);
-    }
-    return x;
-  }
-
-  /// The largest y <= most_y that can be reached from x.
-  [[nodiscard]] double largest_end(double x, double most_y) const {
-    return std::max(0.0, ends(x, most_y).second.value);
-  }
-
- private:
-  struct Edge {
-    double value, slope;
-  };
-
-  void add(double a, double b, double limit) {
-    // What is too small to matter on the scale of the other would only give steep lines.
-    if (std::abs(b) < 1e-13 * std::abs(a)) b = 0.0;
-    planes_[count_++] = {a, b, limit};
-    planes_[count_++] = {-a, -b, limit};
-  }
-
-  [[nodiscard]] std::pair<Edge, Edge> ends(double x, double most_y) const {
-    Edge low{0.0, 0.0}, high{most_y, 0.0};
-    for (const HalfPlane& h : planes_) {
-      if (h.b == 0.0) continue;
-      const Edge edge{(h.c - h.a * x) / h.b, -h.a / h.b};
-      if (h.b > 0.0 && edge.value < high.value) high = edge;
-      if (h.b < 0.0 && edge.value > low.value) low = edge;
-    }
-    return {low, high};
-  }
-
-  std::array<HalfPlane, 24> planes_{};
-  std::size_t count_ = 0;
-};
 
 }  // namespace
 
@@ -134,105 +63,206 @@ Retiming::State Retiming::operator()(double t) const {
   return at(begin, *end, std::clamp((std::sqrt(begin.x) * dt + 0.5 * u * dt * dt) / step, 0.0, 1.0));
 }
 
-Retiming retime(const Robot& robot, const Samples& joints, const RetimeOptions& options) {
-  check(joints, options);
-  const Eigen::Index T = joints.rows();
-  Vector along = Vector::Zero(T);
-  for (Eigen::Index t = 1; t < T; ++t) along[t] = along[t - 1] + (joints.row(t) - joints.row(t - 1)).norm();
-  const double length = along[T - 1];
+/// Grid, passes over it, and what is left to stretch.
+class Retiming::Solver {
+ public:
+  Solver(const Robot& robot, const Samples& joints, const RetimeOptions& options)
+      : robot_(robot), joints_(joints), options_(options), along_(Vector::Zero(joints.rows())) {
+    const Eigen::Index T = joints.rows();
+    for (Eigen::Index t = 1; t < T; ++t) along_[t] = along_[t - 1] + (joints.row(t) - joints.row(t - 1)).norm();
+  }
 
-  Retiming result;
-  result.times_ = Vector::LinSpaced(T, 0.0, least_period * static_cast<double>(T - 1));
-  std::vector<Eigen::Index> rows = {0};
-  for (Eigen::Index t = 1; t < T; ++t) {
-    if (along[t] - along[rows.back()] > least_knot_distance) rows.push_back(t);
+  [[nodiscard]] Retiming solve() {
+    const Eigen::Index T = joints_.rows();
+    if (!(along_[T - 1] > 1e-9)) return rest();
+    choose_knots();
+    lay_grid();
+    measure_slopes();
+    const bool of_rows = options_.of_rows && rows_.size() >= least_rows;
+    Retiming best;
+    share_.assign(law_.points_.size(), 1.0);
+    for (int iteration = 0; iteration < (of_rows ? most_iterations : 1); ++iteration) {
+      pass();
+      law_.stretch_ = 1.0;
+      double excess = excess_between();
+      const Vector rows = of_rows ? excess_of_rows() : Vector();
+      if (of_rows) excess = std::max(excess, rows.maxCoeff());
+      // Between two points of the finer grid a limit is passed by less than the millionth.
+      law_.stretch_ = excess > 1.0 ? excess * (1.0 + 1e-6) : 1.0;
+      const auto stretched = [](const Retiming& law) { return law.points_.back().t * law.stretch_; };
+      if (iteration == 0 || stretched(law_) < stretched(best)) best = law_;
+      if (excess < 1.002 || !of_rows) break;
+      spread(rows);
+    }
+    set_times(best);
+    return best;
   }
-  if (rows.back() != T - 1) {
-    if (rows.size() > 1) rows.pop_back();
-    rows.push_back(T - 1);
-  }
-  Vector knots(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t k = 0; k < rows.size(); ++k) knots[static_cast<Eigen::Index>(k)] = along[rows[k]];
-  if (!(length > 1e-9)) {  // a rest
+
+ private:
+  static constexpr int most_iterations = 12;
+
+  [[nodiscard]] Retiming rest() const {
+    const Eigen::Index T = joints_.rows();
+    Retiming law;
+    law.times_ = Vector::LinSpaced(T, 0.0, least_period * static_cast<double>(T - 1));
     for (const Eigen::Index row : {Eigen::Index{0}, T - 1}) {
-      result.knots_.push_back({static_cast<double>(row), joints.row(row).transpose(), Joints::Zero()});
+      law.knots_.push_back({static_cast<double>(row), joints_.row(row).transpose(), Joints::Zero()});
     }
-    result.points_ = {{0.0, 0.0, 0.0, 0}, {static_cast<double>(T - 1), 0.0, result.times_[T - 1], 0}};
-    return result;
-  }
-  const CubicSpline spline(knots, joints(rows, Eigen::all));
-  const Samples& second = spline.second_derivatives();
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    result.knots_.push_back({knots[row], joints.row(rows[k]).transpose(), second.row(row).transpose()});
+    law.points_ = {{0.0, 0.0, 0.0, 0}, {static_cast<double>(T - 1), 0.0, law.times_[T - 1], 0}};
+    return law;
   }
 
-  // The grid: every knot, and between two of them equal intervals.
-  auto& points = result.points_;
-  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
-    const double begin = result.knots_[k].s, h = result.knots_[k + 1].s - begin;
-    const int parts = std::max(4, static_cast<int>(std::ceil(h / length * options.grid)));
-    for (int i = 0; i < parts; ++i) points.push_back({begin + h * i / parts, 0.0, 0.0, k});
-  }
-  points.push_back({length, 0.0, 0.0, rows.size() - 2});
-
-  // With ds/dt = 1 at every point the state's velocity and acceleration are the path's derivatives.
-  const std::size_t N = points.size() - 1;
-  std::vector<Slope> slopes(N + 1);
-  for (std::size_t i = 0; i <= N; ++i) {
-    Retiming::Point here = points[std::min(i, N - 1)], next = points[std::min(i, N - 1) + 1];
-    here.x = next.x = 1.0;
-    const Retiming::State state = result.at(here, next, i < N ? 0.0 : 1.0);
-    Slope& slope = slopes[i];
-    slope.first = state.velocity;
-    slope.second = state.acceleration;
-    double rate = slope.first.cwiseAbs().cwiseQuotient(options.velocity).maxCoeff();
-    if (options.tip_speed) {
-      const Jacobian J = jacobian(robot, state.position, options.tool.position);
-      rate = std::max(rate, (J.topRows<3>() * slope.first).norm() / *options.tip_speed);
+  void choose_knots() {
+    const Eigen::Index T = joints_.rows();
+    rows_ = {0};
+    for (Eigen::Index t = 1; t < T; ++t) {
+      if (along_[t] - along_[rows_.back()] > least_knot_distance) rows_.push_back(t);
     }
-    const double bend = slope.second.cwiseAbs().cwiseQuotient(options.acceleration).maxCoeff();
-    // A path that stands still at a point (a cusp of the spline) is left by its second derivative alone.
-    slope.most = std::min(1.0 / std::max(rate * rate, 1e-12), rate < 1e-9 && bend > 0.0 ? 1.0 / bend : infinity);
+    if (rows_.back() != T - 1) {
+      if (rows_.size() > 1) rows_.pop_back();
+      rows_.push_back(T - 1);
+    }
+    const Vector knots = along_(rows_);
+    const Samples second = CubicSpline(knots, joints_(rows_, Eigen::all)).second_derivatives();
+    for (Eigen::Index k = 0; k < knots.size(); ++k) {
+      const Eigen::Index row = rows_[static_cast<std::size_t>(k)];
+      law_.knots_.push_back({knots[k], joints_.row(row).transpose(), second.row(k).transpose()});
+    }
   }
 
-  const auto interval = [&](std::size_t i) {
-    return Interval(slopes[i], slopes[i + 1], options.acceleration, points[i + 1].s - points[i].s);
-  };
-  std::vector<double> controllable(N + 1, 0.0);
-  for (std::size_t i = N; i-- > 0;) controllable[i] = interval(i).largest_begin(slopes[i].most, controllable[i + 1]);
-  for (std::size_t i = 0; i < N; ++i) {
-    points[i + 1].x = interval(i).largest_end(points[i].x, controllable[i + 1]);
-    const double rate = std::sqrt(points[i].x) + std::sqrt(points[i + 1].x);
-    points[i + 1].t = points[i].t + 2.0 * (points[i + 1].s - points[i].s) / std::max(rate, 1e-9);
+  /// Every knot, and between two of them equal intervals.
+  void lay_grid() {
+    const double length = along_[along_.size() - 1];
+    for (std::size_t k = 0; k + 1 < rows_.size(); ++k) {
+      const double begin = law_.knots_[k].s, h = law_.knots_[k + 1].s - begin;
+      const int parts = std::max(4, static_cast<int>(std::ceil(h / length * options_.grid)));
+      at_knot_.push_back(law_.points_.size());
+      for (int i = 0; i < parts; ++i) law_.points_.push_back({begin + h * i / parts, 0.0, 0.0, k});
+    }
+    at_knot_.push_back(law_.points_.size());
+    law_.points_.push_back({length, 0.0, 0.0, rows_.size() - 2});
   }
 
-  double excess = 1.0;
-  for (std::size_t i = 0; i < N; ++i) {
-    for (int tenth = 0; tenth <= 10; ++tenth) {
-      const Retiming::State state = result.at(points[i], points[i + 1], tenth / 10.0);
-      const double speed = state.velocity.cwiseAbs().cwiseQuotient(options.velocity).maxCoeff();
-      const double bend = state.acceleration.cwiseAbs().cwiseQuotient(options.acceleration).maxCoeff();
-      excess = std::max({excess, speed, std::sqrt(bend)});
-      if (options.tip_speed) {
-        const Jacobian J = jacobian(robot, state.position, options.tool.position);
-        excess = std::max(excess, (J.topRows<3>() * state.velocity).norm() / *options.tip_speed);
+  void measure_slopes() {
+    const auto& points = law_.points_;
+    const std::size_t N = points.size() - 1;
+    slopes_.resize(N + 1);
+    for (std::size_t i = 0; i <= N; ++i) {
+      // With ds/dt = 1 all along, the state's velocity and acceleration are the path's derivatives.
+      Point here = points[std::min(i, N - 1)], next = points[std::min(i, N - 1) + 1];
+      here.x = next.x = 1.0;
+      const State state = law_.at(here, next, i < N ? 0.0 : 1.0);
+      Slope& slope = slopes_[i];
+      slope.first = state.velocity;
+      slope.second = state.acceleration;
+      const double rate = speed_share(state);
+      const double bend = slope.second.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff();
+      // A path that stands still at a point (a cusp of the spline) is left by its second derivative alone.
+      slope.most = std::min(1.0 / std::max(rate * rate, 1e-12), rate < 1e-9 && bend > 0.0 ? 1.0 / bend : infinity);
+    }
+  }
+
+  /// Largest share of a limit of speed.
+  [[nodiscard]] double speed_share(const State& state) const {
+    const double joint = state.velocity.cwiseAbs().cwiseQuotient(options_.velocity).maxCoeff();
+    if (!options_.tip_speed) return joint;
+    const Jacobian J = jacobian(robot_, state.position, options_.tool.position);
+    return std::max(joint, (J.topRows<3>() * state.velocity).norm() / *options_.tip_speed);
+  }
+
+  /// Backwards the largest x from which the rest can still be gone, forwards as fast as they allow.
+  void pass() {
+    auto& points = law_.points_;
+    const std::size_t N = points.size() - 1;
+    const auto interval = [&](std::size_t i) {
+      return Interval(slopes_[i], slopes_[i + 1], options_.acceleration * std::min(share_[i], share_[i + 1]),
+                      points[i + 1].s - points[i].s);
+    };
+    std::vector<double> controllable(N + 1, 0.0);
+    for (std::size_t i = N; i-- > 0;) controllable[i] = interval(i).largest_begin(slopes_[i].most, controllable[i + 1]);
+    for (std::size_t i = 0; i < N; ++i) {
+      points[i + 1].x = interval(i).largest_end(points[i].x, controllable[i + 1]);
+      const double rate = std::sqrt(points[i].x) + std::sqrt(points[i + 1].x);
+      points[i + 1].t = points[i].t + 2.0 * (points[i + 1].s - points[i].s) / std::max(rate, 1e-9);
+    }
+  }
+
+  /// The stretch that the limits ask for on a grid ten times as fine.
+  [[nodiscard]] double excess_between() const {
+    double excess = 1.0;
+    for (std::size_t i = 0; i + 1 < law_.points_.size(); ++i) {
+      for (int tenth = 0; tenth <= 10; ++tenth) {
+        const State state = law_.at(law_.points_[i], law_.points_[i + 1], tenth / 10.0);
+        const double bend = state.acceleration.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff();
+        excess = std::max({excess, speed_share(state), std::sqrt(bend)});
       }
     }
+    return excess;
   }
-  // Between two points of the finer grid a limit is passed by less than the millionth.
-  result.stretch_ = excess > 1.0 ? excess * (1.0 + 1e-6) : 1.0;
 
-  std::size_t i = 0;
-  for (Eigen::Index t = 1; t < T; ++t) {
-    while (i + 1 < N && points[i + 1].s <= along[t]) ++i;
-    const double step = points[i + 1].s - points[i].s, gone = std::min(along[t] - points[i].s, step);
-    const double x = points[i].x + (points[i + 1].x - points[i].x) * gone / step;
-    const double rate = std::sqrt(points[i].x) + std::sqrt(std::max(0.0, x));
-    const double time = points[i].t + (gone > 0.0 ? 2.0 * gone / std::max(rate, 1e-9) : 0.0);
-    result.times_[t] = std::max(time * result.stretch_, result.times_[t - 1] + least_period);
+  /// The same of the spline through the knots over their times, for each of them. Its second derivative is largest at
+  /// a knot, and its first is looked at in tenths of the interval that ends there.
+  [[nodiscard]] Vector excess_of_rows() const {
+    const auto K = static_cast<Eigen::Index>(rows_.size());
+    Vector times(K);
+    for (Eigen::Index k = 0; k < K; ++k) times[k] = law_.points_[at_knot_[static_cast<std::size_t>(k)]].t;
+    const CubicSpline spline(times, joints_(rows_, Eigen::all));
+    Vector excess(K);
+    for (Eigen::Index k = 0; k < K; ++k) {
+      const Joints bend = spline.second_derivatives().row(k).transpose();
+      excess[k] = std::sqrt(bend.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff());
+      if (k == 0) continue;
+      const Samples speeds = spline.derivative(Vector::LinSpaced(11, times[k - 1], times[k]));
+      for (const auto& speed : speeds.rowwise()) {
+        excess[k] = std::max(excess[k], speed.transpose().cwiseAbs().cwiseQuotient(options_.velocity).maxCoeff());
+      }
+    }
+    return excess;
   }
-  return result;
+
+  /// Less acceleration about the knots where the spline through the rows asks for too much.
+  void spread(const Vector& excess) {
+    const auto K = static_cast<std::ptrdiff_t>(rows_.size());
+    std::vector<double> less(share_.size(), 1.0);
+    for (std::ptrdiff_t k = 0; k < K; ++k) {
+      const double over = excess[k] * excess[k];
+      if (!(over > 1.0)) continue;
+      const auto begin = at_knot_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, k - 2))];
+      const auto end = at_knot_[static_cast<std::size_t>(std::min(K - 1, k + 2))];
+      for (std::size_t i = begin; i <= end; ++i) less[i] = std::min(less[i], 1.0 / over);
+    }
+    for (std::size_t i = 0; i < share_.size(); ++i) share_[i] *= less[i];
+  }
+
+  void set_times(Retiming& law) const {
+    const auto& points = law.points_;
+    const std::size_t N = points.size() - 1;
+    law.times_ = Vector::Zero(along_.size());
+    std::size_t i = 0;
+    for (Eigen::Index t = 1; t < along_.size(); ++t) {
+      while (i + 1 < N && points[i + 1].s <= along_[t]) ++i;
+      const double step = points[i + 1].s - points[i].s, gone = std::min(along_[t] - points[i].s, step);
+      const double x = points[i].x + (points[i + 1].x - points[i].x) * gone / step;
+      const double rate = std::sqrt(points[i].x) + std::sqrt(std::max(0.0, x));
+      const double time = points[i].t + (gone > 0.0 ? 2.0 * gone / std::max(rate, 1e-9) : 0.0);
+      law.times_[t] = std::max(time * law.stretch_, law.times_[t - 1] + least_period);
+    }
+  }
+
+  const Robot& robot_;
+  const Samples& joints_;
+  const RetimeOptions& options_;
+  Vector along_;                      // summed distances of the rows
+  std::vector<Eigen::Index> rows_;    // that are knots
+  std::vector<std::size_t> at_knot_;  // grid point of each knot
+  std::vector<Slope> slopes_;         // of the grid points
+  std::vector<double> share_;         // of the acceleration limits, at the grid points
+  Retiming law_;
+};
+
+Retiming retime(const Robot& robot, const Samples& joints, const RetimeOptions& options) {
+  check(joints, options);
+  return Retiming::Solver(robot, joints, options).solve();
 }
 
 }  // namespace lfd

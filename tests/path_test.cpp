@@ -163,6 +163,140 @@ TEST_CASE("a hand that passes a singularity at 1 mm, 1 cm, 10 cm is followed wit
   CHECK(largest_step(fine.joints) < 0.55 * largest_step(coarse.joints));
 }
 
+TEST_CASE("a straight hand path past a singularity is continuous, or the reason why not has a name") {
+  const InverseKinematics arm(nominal_ur10());
+  const UrGeometry g = ur_geometry(arm.robot());
+  enum Kind { shoulder, elbow, wrist };
+  const auto kind = GENERATE(shoulder, elbow, wrist);
+  const double passing = GENERATE(-0.01, -0.001, 0.0, 0.001, 0.01, 0.1);
+  INFO("kind " << kind << ", passing at " << passing);
+  const auto solve = [&](int refinements) {
+    constexpr Eigen::Index T = 60;
+    std::vector<Pose> poses;
+    for (Eigen::Index t = 0; t < T; ++t) {
+      const double s = static_cast<double>(t) / (T - 1.0) - 0.5;
+      Pose pose;
+      if (kind == shoulder) {  // the wrist centre goes by the cylinder round the base axis, or through it
+        pose.rotation = rotation_from_rpy(Vector3(2.6, 0.4, 0.3));
+        pose.position = Vector3(0.6 * s, g.d4 + passing, 0.6) + g.d6 * pose.rotation.col(2);
+      } else if (kind == elbow) {  // out to so much before full reach, or beyond it
+        Joints q;
+        q << 0.2, -0.9, 0.0, 0.4, 1.1, 0.3;
+        const auto frames = joint_frames(arm.robot(), q);
+        const Vector3 out = (frames[3].position - frames[1].position).normalized();
+        pose = frames[6];
+        pose.position += (0.3 * (s - 0.5) - passing) * out;
+      } else {  // the tool, level but for so much, comes by the line along joint 4
+        pose.rotation = rotation_from_rpy(Vector3(std::numbers::pi / 2.0 + passing, 0.0, 0.0));
+        pose.position = Vector3(0.7, -g.d4 - g.d6 + 0.4 * s, 0.4);
+      }
+      poses.push_back(pose);
+    }
+    PathOptions options;
+    options.refinements = refinements;
+    // Where the stretched elbow ends, another posture may still reach on.
+    if (kind == elbow) options.branch = arm.branch((Joints() << 0.2, -0.9, 0.1, 0.3, 1.1, 0.3).finished());
+    return solve_path(arm, poses, Vector::LinSpaced(T, 0.0, 10.0), options);
+  };
+  const JointPath path = solve(14);
+  const bool reachable = kind == wrist || passing >= 0.0;
+  if (reachable && !(kind == shoulder && passing == 0.0)) {
+    CHECK(path.status == PathStatus::continuous);
+    CHECK(path.reason.empty());
+    CHECK(path.residual.maxCoeff() < 1e-9);
+    CHECK(path.midpoint_deviation.maxCoeff() <= 0.005);
+    CHECK(largest_step(path.joints) <= 0.5);
+    CHECK(path.branch_changes == 0);
+  } else if (!reachable) {
+    CHECK(path.status != PathStatus::continuous);
+    const char* why = kind == elbow ? "has no solution there" : "out of reach";
+    CHECK(path.reason.find(why) != std::string::npos);
+  }
+}
+
+TEST_CASE("rows are put between samples that are too far apart, and only there") {
+  const InverseKinematics arm(nominal_ur10());
+  const Matrix3 down = rotation_from_rpy(Vector3(pi, 0.0, 0.0));
+  const std::vector<Pose> poses = {
+      {down, Vector3(0.4, -0.5, 0.3)}, {down, Vector3(0.41, -0.5, 0.3)}, {down, Vector3(0.5, 0.5, 0.4)}};
+  Vector times(3);
+  times << 0.0, 0.5, 2.5;
+  PathOptions options;
+  CHECK(solve_path(arm, poses, times, options).status == PathStatus::jump);
+  options.refinements = 6;
+  const JointPath path = solve_path(arm, poses, times, options);
+  CHECK(path.status == PathStatus::continuous);
+  REQUIRE(path.times.size() > 6);
+  REQUIRE(path.joints.rows() == path.times.size());
+  CHECK(path.given.size() == static_cast<std::size_t>(path.times.size()));
+  CHECK(path.given[1] == 1);
+  CHECK(!path.inserted(1));
+  CHECK(path.inserted(2));
+  CHECK(path.given.back() == 2);
+  CHECK(!path.inserted(path.given.size() - 1));
+  CHECK(path.midpoint_deviation.maxCoeff() <= options.midpoint_tolerance);
+  for (Eigen::Index t = 1; t < path.times.size(); ++t) {
+    CHECK(path.times[t] > path.times[t - 1]);
+    const double share = (path.times[t] - times[1]) / (times[2] - times[1]);
+    if (share < 0.0) continue;
+    const Pose wanted = interpolate(poses[1], poses[2], share);
+    CHECK(distance(forward_kinematics(arm.robot(), path.joints.row(t).transpose()), wanted).largest() < 1e-9);
+  }
+
+  // A hand that leaps: finer sampling does not help where the way between goes through the base.
+  const std::vector<Pose> across = {{down, Vector3(0.5, -0.5, 0.3)}, {down, Vector3(-0.5, 0.5, 0.3)}};
+  const JointPath leap = solve_path(arm, across, Vector::LinSpaced(2, 0.0, 1.0), options);
+  CHECK(leap.status == PathStatus::jump);
+  CHECK(leap.sample == 1);
+  CHECK(leap.reason.find("the way between is out of reach") != std::string::npos);
+  CHECK(leap.times.size() == 2);
+}
+
+TEST_CASE("a branch is kept where it can be, and the path named that leaves it where not") {
+  const InverseKinematics arm(nominal_ur10());
+  constexpr Eigen::Index T = 40;
+  const Vector times = Vector::LinSpaced(T, 0.0, 4.0);
+  std::vector<Pose> line;
+  for (Eigen::Index t = 0; t < T; ++t) {
+    line.push_back({rotation_from_rpy(Vector3(pi, 0.0, 0.0)), Vector3(0.4 + 0.01 * static_cast<double>(t), 0.3, 0.3)});
+  }
+  for (int branch = 0; branch < 8; ++branch) {
+    PathOptions options;
+    options.branch = branch;
+    const JointPath path = solve_path(arm, line, times, options);
+    INFO(branch_name(branch));
+    CHECK(path.status == PathStatus::continuous);
+    for (Eigen::Index t = 0; t < T; ++t) CHECK(arm.branch(path.joints.row(t).transpose()) == branch);
+  }
+  Robot bent_one_way = arm.robot();
+  bent_one_way.limits.position.row(2) << 0.0, 3.0;
+  PathOptions options;
+  options.branch = 1;  // elbow-
+  const JointPath other = solve_path(bent_one_way, line, times, options);
+  CHECK(other.status == PathStatus::other_branch);
+  CHECK(other.joints.rows() == T);
+  CHECK((other.branch[0] & 1) == 0);
+  CHECK(other.reason.find("left-wrist+-elbow-") != std::string::npos);
+  CHECK(other.sample == 0);
+  options.branch = 0;
+  CHECK(solve_path(bent_one_way, line, times, options).status == PathStatus::continuous);
+
+  // A path over the wrist singularity itself is kept in one branch up to there, and no further.
+  std::vector<Pose> over;
+  for (Eigen::Index t = 0; t < T; ++t) {
+    Joints q;
+    q << 0.2, -1.2, 1.4, 0.3, 0.02 * static_cast<double>(t - 20), 1.3;
+    over.push_back(forward_kinematics(arm.robot(), q));
+  }
+  options.branch = arm.branch((Joints() << 0.2, -1.2, 1.4, 0.3, -0.4, 1.3).finished());
+  const JointPath crossing = solve_path(arm, over, times, options);
+  CHECK(crossing.status == PathStatus::other_branch);
+  CHECK(crossing.branch_changes == 1);
+
+  options.branch = 8;
+  CHECK_THROWS_AS(solve_path(arm, line, times, options), UsageError);
+}
+
 TEST_CASE("samples with a singular wrist are crossed with the q6 of their neighbours") {
   const InverseKinematics arm(nominal_ur10());
   constexpr Eigen::Index T = 101;

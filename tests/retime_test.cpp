@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lfdtools/error.hpp"
+#include "lfdtools/interpolation.hpp"
 #include "lfdtools/motion.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/ur_geometry.hpp"
@@ -61,7 +62,9 @@ TEST_CASE("one joint alone runs as its two limits say in closed form") {
   for (const double distance : {0.05, 0.4, 3.0}) {
     Samples joints = Samples::Zero(50, 6);
     for (Eigen::Index t = 0; t < 50; ++t) joints(t, 1) = distance * std::pow(static_cast<double>(t) / 49.0, 1.5);
-    const Retiming law = retime(robot, joints, limits(1.2, 2.5));
+    RetimeOptions options = limits(1.2, 2.5);
+    options.of_rows = false;
+    const Retiming law = retime(robot, joints, options);
     CHECK(law.duration() == Approx(fastest(distance, 1.2, 2.5)).epsilon(1e-5));
     CHECK(law.stretch() == Approx(1.0).margin(1e-5));
     CHECK(law(0.0).velocity.norm() < 1e-12);
@@ -72,15 +75,39 @@ TEST_CASE("one joint alone runs as its two limits say in closed form") {
   }
 }
 
+/// The same of the cubic spline through the rows over their times.
+double largest_share_of_rows(const Retiming& law, const Samples& joints, const RetimeOptions& options) {
+  const CubicSpline spline(law.times(), joints);
+  const Eigen::Index T = joints.rows();
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < 10 * T; ++k) {
+    const Eigen::Index row = std::min(k / 10, T - 2);
+    const double share = static_cast<double>(k - 10 * row) / 10.0;
+    const double t = law.times()[row] + std::min(share, 1.0) * (law.times()[row + 1] - law.times()[row]);
+    const Joints speed = spline.derivative(Vector::Constant(1, t)).row(0).transpose();
+    const Joints bend = ((1.0 - std::min(share, 1.0)) * spline.second_derivatives().row(row) +
+                         std::min(share, 1.0) * spline.second_derivatives().row(row + 1))
+                            .transpose();
+    largest = std::max({largest, speed.cwiseAbs().cwiseQuotient(options.velocity).maxCoeff(),
+                        bend.cwiseAbs().cwiseQuotient(options.acceleration).maxCoeff()});
+  }
+  return largest;
+}
+
 TEST_CASE("limits hold on a grid ten times as fine, the path is the same, and states belong together") {
   const Robot robot = nominal_ur10();
   Random random(1);
-  double worst_stretch = 1.0, worst_share = 0.0, least_share = 1.0;
+  double worst_stretch = 1.0, worst_share = 0.0, least_share = 1.0, worst_rows = 0.0, slowest = 0.0;
   for (int i = 0; i < 60; ++i) {
     const Samples joints = smooth_joints(random, 150);
     RetimeOptions options = limits(random.uniform(0.3, 3.0), random.uniform(0.5, 5.0));
     options.acceleration[i % 6] *= 0.3;
+    const Retiming careful = retime(robot, joints, options);
+    worst_share = std::max(worst_share, largest_share(careful, options));
+    worst_rows = std::max(worst_rows, largest_share_of_rows(careful, joints, options));
+    options.of_rows = false;
     const Retiming law = retime(robot, joints, options);
+    slowest = std::max(slowest, careful.duration() / law.duration());
     worst_stretch = std::max(worst_stretch, law.stretch());
     const double share = largest_share(law, options);
     worst_share = std::max(worst_share, share);
@@ -101,7 +128,10 @@ TEST_CASE("limits hold on a grid ten times as fine, the path is the same, and st
       CHECK((difference - law(t).velocity).norm() < 1e-4);
     }
   }
-  INFO("stretched by up to " << worst_stretch << ", largest share of a limit " << worst_share);
+  INFO("stretched by up to " << worst_stretch << ", largest share of a limit " << worst_share << ", of the rows "
+                             << worst_rows << ", which cost up to " << slowest - 1.0);
+  CHECK(worst_rows <= 1.0 + 1e-5);
+  CHECK(slowest < 1.04);
   CHECK(worst_share <= 1.0 + 1e-9);
   CHECK(least_share > 0.98);  // some limit is always used up
   CHECK(worst_stretch < 1.01);
@@ -140,7 +170,9 @@ TEST_CASE("no slower than the best that dynamic programming finds on a small pro
     const double angle = pi * static_cast<double>(t) / (T - 1.0);
     joints.row(t).head(2) << radius * (1.0 - std::cos(angle)), radius * std::sin(angle);
   }
-  const Retiming law = retime(nominal_ur10(), joints, limits(v, a));
+  RetimeOptions options = limits(v, a);
+  options.of_rows = false;
+  const Retiming law = retime(nominal_ur10(), joints, options);
 
   // Over the arc length s: q' = (sin, cos), q'' = (cos, -sin) / radius, at angle s / radius.
   constexpr int N = 120, levels = 400;
@@ -183,6 +215,7 @@ TEST_CASE("the tool tip keeps its speed limit too") {
   const Vector3 tip = (forward_kinematics(robot, Joints::Zero()) * options.tool).position;
   const double radius = std::hypot(tip.x(), tip.y());
   options.tip_speed = 0.5;
+  options.of_rows = false;
   const Retiming law = retime(robot, joints, options);
   CHECK(law.duration() == Approx(fastest(2.0, 0.5 / radius, 10.0)).epsilon(1e-5));
   CHECK(law(0.5 * law.duration()).velocity[0] * radius == Approx(0.5));
@@ -190,7 +223,8 @@ TEST_CASE("the tool tip keeps its speed limit too") {
 
 TEST_CASE("corners, rests, repeated rows and two rows have times that rise") {
   const Robot robot = nominal_ur10();
-  const RetimeOptions options = limits(1.0, 2.0);
+  RetimeOptions options = limits(1.0, 2.0);
+  options.of_rows = false;
   const auto rising = [](const Vector& times) {
     return (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff() > 0.0;
   };

@@ -100,7 +100,7 @@ TEST_CASE("poses at and near every singularity are solved without twins") {
     tally.clear_wrist = 0.1;
     tally.clear_elbow = kind == 4 ? 0.1 : 0.0;
     for (int exponent = 2; exponent <= 18; ++exponent) {
-      for (int i = 0; i < 600; ++i) {
+      for (int i = 0; i < 6000; ++i) {
         const double offset = exponent > 17 ? 0.0 : (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, -exponent);
         Joints q = random_joints(random);
         if (kind == 0) q[4] = offset;
@@ -120,7 +120,7 @@ TEST_CASE("poses at and near every singularity are solved without twins") {
     }
     INFO("kind " << kind);
     // Folded, the shoulder turns a3 / (a2 - a3), 15 times as far as the elbow.
-    require_right(tally, kind == 3 ? 1e-5 : 1e-6);
+    require_right(tally, kind == 3 ? 1e-5 : 2e-6);
   }
 }
 

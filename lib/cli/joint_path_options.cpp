@@ -17,6 +17,7 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
                  "limit of every joint's acceleration, in place of the robot file's [rad/s^2]");
   program.flag("--all", request.all, "write every distinct solution of every pose instead of a path");
   program.flag("--speeds", request.speeds, "add columns qd1..qd6 [rad/s]");
+  program.flag("--accelerations", request.accelerations, "add columns qdd1..qdd6 [rad/s^2]");
   program.flag("--diagnostics", request.diagnostics, "add columns branch, residual, condition");
   program.flag("--singularities", request.singularities, "add columns manipulability, shoulder, elbow, wrist");
   declare_arm_gates(program, request.limits);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "lfdtools/interpolation.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/labelled_table.hpp"
@@ -15,6 +17,7 @@ namespace {
 
 const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> speed_names = {"qd1", "qd2", "qd3", "qd4", "qd5", "qd6"};
+const std::vector<std::string> acceleration_names = {"qdd1", "qdd2", "qdd3", "qdd4", "qdd5", "qdd6"};
 /// [rad/s^2], of movej in the URScript manual: 80 deg/s^2.
 constexpr double usual_acceleration = 1.4;
 /// An interval may become 64.
@@ -104,6 +107,7 @@ class Answer {
     if (request_.all) return joined({"t", "solution"}, joint_names);
     auto columns = joined({"t"}, joint_names);
     if (request_.speeds) columns = joined(columns, speed_names);
+    if (request_.accelerations) columns = joined(columns, acceleration_names);
     if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
     if (request_.singularities) columns = joined(columns, {"manipulability", "shoulder", "elbow", "wrist"});
     return joined(columns, passed_);
@@ -126,14 +130,14 @@ class Answer {
     const Vector& given = recording.demonstration.trajectory.times;
     JointPath path = solve_path(arm_, poses, given, options_);
     const Vector times = path.times;
-    Samples speeds;
-    if (request_.retime && path.joints.rows() > 1) speeds = retimed(recording, path);
+    std::optional<Rates> rates;
+    if (request_.retime && path.joints.rows() > 1) rates = retimed(recording, path);
     if (!judge(path, recording, arm_.robot(), tool_, request_.limits, run_)) return;
     report_rows(recording, path);
     Samples rows = beside(path.times, path.joints);
-    // By the spline through the joints, so that it does not lag half a sample.
-    if (speeds.size() == 0) speeds = speeds_along(path);
-    if (request_.speeds) rows = beside(rows, speeds);
+    if (!rates) rates = rates_along(path);
+    if (request_.speeds) rows = beside(rows, rates->speeds);
+    if (request_.accelerations) rows = beside(rows, rates->accelerations);
     if (request_.diagnostics) rows = beside(rows, diagnostics(path));
     if (request_.singularities) rows = beside(rows, singularities(path));
     if (!passed_.empty()) {
@@ -142,8 +146,13 @@ class Answer {
     out.write(recording.demonstration.labels, rows);
   }
 
-  /// Gives the path the times of the fastest motion along it. @return its joint speeds, T x 6
-  Samples retimed(const Recording& recording, JointPath& path) {
+  /// Of the joints along a path, each T x 6.
+  struct Rates {
+    Samples speeds, accelerations;
+  };
+
+  /// Gives the path the times of the fastest motion along it.
+  Rates retimed(const Recording& recording, JointPath& path) {
     RetimeOptions options;
     options.velocity = arm_.robot().limits.velocity;
     options.acceleration = *arm_.robot().limits.acceleration;
@@ -157,9 +166,13 @@ class Answer {
     run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", words.empty() ? "" : words + ": ",
                                          law.duration(), before[before.size() - 1] - before[0]));
     run_.figure("duration", law.duration());
-    Samples speeds(path.times.size(), 6);
-    for (Eigen::Index t = 0; t < speeds.rows(); ++t) speeds.row(t) = law(law.times()[t]).velocity.transpose();
-    return speeds;
+    Rates rates{Samples(path.times.size(), 6), Samples(path.times.size(), 6)};
+    for (Eigen::Index t = 0; t < path.times.size(); ++t) {
+      const Retiming::State state = law(law.times()[t]);
+      rates.speeds.row(t) = state.velocity.transpose();
+      rates.accelerations.row(t) = state.acceleration.transpose();
+    }
+    return rates;
   }
 
   void report_rows(const Recording& recording, const JointPath& path) {
@@ -175,9 +188,12 @@ class Answer {
                          recording.place(path.given[first]));
   }
 
-  static Samples speeds_along(const JointPath& path) {
-    if (path.times.size() < 2) return Samples::Zero(path.times.size(), 6);
-    return CubicSpline(path.times, path.joints).derivative(path.times);
+  /// By the spline through the joints, so that speeds do not lag half a sample.
+  static Rates rates_along(const JointPath& path) {
+    const Eigen::Index T = path.times.size();
+    if (T < 2) return {Samples::Zero(T, 6), Samples::Zero(T, 6)};
+    const CubicSpline spline(path.times, path.joints);
+    return {spline.derivative(path.times), spline.second_derivatives()};
   }
 
   static Samples diagnostics(const JointPath& path) {

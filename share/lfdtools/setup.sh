@@ -9,7 +9,7 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${LFD_BUILD_DIR:-$root/build/release}
 
-packages="g++ cmake make ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev liblbfgspp-dev libmd-dev"
+packages="g++ cmake make ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev liblbfgspp-dev libmd-dev libyaml-cpp-dev"
 testing=OFF
 case "${1-}" in
   "") ;;

@@ -26,7 +26,11 @@ def table(columns, rows):
     return "\n".join([",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in rows]) + "\n"
 
 
-MEASURES = {"ur10": (.1273, -.612, -.5723, .163941, .1157, .0922), "ur10e": (.1807, -.6127, -.57155, .17415, .11985, .11655)}
+MEASURES = {"ur10": (.1273, -.612, -.5723, .163941, .1157, .0922), "ur10e": (.1807, -.6127, -.57155, .17415, .11985, .11655),
+            "ur3": (.1519, -.24365, -.21325, .11235, .08535, .0819), "ur5": (.089159, -.425, -.39225, .10915, .09465, .0823),
+            "ur3e": (.15185, -.24355, -.2132, .13105, .08535, .0921), "ur5e": (.1625, -.425, -.3922, .1333, .0997, .0996),
+            "ur16e": (.1807, -.4784, -.36, .17415, .11985, .11655)}
+LARGE = ("ur10", "ur10e")  # the others do not reach the holes
 checks = Checks()
 random = np.random.default_rng(1)
 joints = ["q%d" % i for i in range(1, 7)]
@@ -62,6 +66,9 @@ for robot, (d1, a2, a3, d4, d5, d6) in MEASURES.items():
         checks.below(f"{robot}: the joints among the solutions", away, 1e-6)
         checks.below(f"{robot}: no more than 8 solutions", len(found[k]), 8)
 
+    if robot not in LARGE:
+        continue
+
     # Paths: the intentions of an experiment, the tool in a fixed orientation.
     paths = run("demo-synth", os.path.join(SHARE, "peg-in-hole", "A.json"), "--write", "intentions")
     quaternion = (0.7071067811865476, -0.7071067811865476, 0, 0)
@@ -80,4 +87,22 @@ for robot, (d1, a2, a3, d4, d5, d6) in MEASURES.items():
         checks.below(f"{robot}: joint step along a path [rad]", step.max(), 0.1)
         checks.below(f"{robot}: joint step against its neighbours'", (np.abs(np.diff(step, axis=0)).max()), 0.02)
         checks.below(f"{robot}: branches along a path", len(set(values[:, columns.index("branch")])), 1)
+
+# Retimed: the same joints, their speeds and accelerations, by differences over the new times, within the limits and at
+# one of them nearly all the time; the columns are the derivatives.
+limits, acceleration = np.radians([120, 120, 180, 180, 180, 180]), 1.4
+common = ("-q", "--orientation", "0.7071067811865476,-0.7071067811865476,0,0", "--no-gates")
+plain = groups(run("ur10-ik", *common, text=paths))
+for (_, columns, slow), (_, _, fast) in zip(plain, groups(run("ur10-ik", *common, "--retime", "--speeds", "--accelerations", text=paths))):
+    t, q, speed, bend = fast[:, 0], fast[:, 1:7], fast[:, 7:13], fast[:, 13:19]
+    checks.below("retimed: joints changed", np.abs(q - slow[:, 1:7]).max(), 0)
+    dt = np.diff(t)
+    chord = np.diff(q, axis=0) / dt[:, None]
+    second = 2 * np.diff(chord, axis=0) / (dt[1:] + dt[:-1])[:, None]
+    checks.below("retimed: share of a speed limit", (np.abs(chord) / limits).max(), 1 + 1e-6)
+    checks.below("retimed: share of an acceleration limit", np.abs(second).max() / acceleration, 1 + 1e-4)
+    checks.below("retimed: speed column", np.abs(0.5 * (speed[1:] + speed[:-1]) - chord).max(), 0.02)
+    used = np.maximum((np.abs(speed) / limits).max(1), np.abs(bend).max(1) / acceleration)
+    checks.below("retimed: share of a limit left unused, median", 1 - np.median(used), 0.01)
+    checks.below("retimed: rest at both ends", max(np.abs(speed[0]).max(), np.abs(speed[-1]).max()), 1e-3)
 checks.finish()

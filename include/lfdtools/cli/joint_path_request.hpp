@@ -23,6 +23,7 @@ struct JointPathRequest {
   bool retime = false;                 ///< as fast as the limits allow
   std::optional<double> acceleration;  ///< of every joint, in place of the robot file's [rad/s^2]
   bool speeds = false;
+  bool accelerations = false;
   bool diagnostics = false;
   bool singularities = false;
 };

@@ -19,7 +19,8 @@ _lfdtools_options() {
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --test --noise-free --repetitions" \
                          "--trim -n --basis -k --components --table --reliability --suggest" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
-    ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --all --speeds --diagnostics" \
+    ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --posture --given-rows" \
+                  "--retime --acceleration --all --speeds --accelerations --diagnostics --singularities" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
     ur10-fk) echo "$common --robot --tool --frame" ;;
     motion-compare) echo "$common $table --reference --duration -n --samples" ;;
@@ -55,7 +56,7 @@ _lfdtools_words() {
     skill-validate:--road) echo "recordings demonstrations references" ;;
     skill-plot:--kind) echo "auto motions planes time weights errors reliability" ;;
     skill-plot:--planes) echo "x-y y-z x-z x-y,y-z x-y,y-z,x-z" ;;
-    *:--robot) echo "ur10 ur10e" ;;
+    *:--robot) echo "ur3 ur3e ur5 ur5e ur10 ur10e ur16e" ;;
     *:--frame) echo "base base_link" ;;
     dmp-fit:--no-gate) echo "goal_change" ;;
     mvgpr-train:--no-gate) echo "two_ways" ;;
@@ -64,11 +65,11 @@ _lfdtools_words() {
     skill-generate:--sd) echo "latent predictive" ;;
     skill-generate:--band) echo "pointwise path" ;;
     skill-generate:--via | skill-generate:--goal-at | skill-generate:--*-velocity | skill-generate:--approach) return 2 ;;
-    ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint branch_change joint_speed joint_acceleration" \
+    ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint posture branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
     *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start | *:--suggest) return 2 ;;
-    *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--max-*) return 2 ;;
+    *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--acceleration | *:--max-*) return 2 ;;
     *) return 1 ;;
   esac
 }
