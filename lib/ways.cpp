@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
-#include "lfdtools/dmp_fit.hpp"
+#include "lfdtools/kmeans.hpp"
 #include "lfdtools/skill_train.hpp"
 
 namespace lfd {
 namespace {
 
-constexpr double least_separation = 5;
+constexpr double least_separation = 7;      // in a target; six normal values part so by chance once in twenty
+constexpr std::size_t least_of_target = 6;  // rows
+constexpr double least_separation_of_all = 5;
 constexpr double least_share = 0.05;
 constexpr Eigen::Index least_rows = 20;
 
@@ -80,6 +82,44 @@ void tell_the_others(const Skill& skill, const std::vector<SkillRow>& rows, cons
   }
 }
 
+/// Where no target has rows enough to part: the best split of all rows in two, along the line between the means.
+std::optional<Ways> two_ways_of_all(const Matrix& residuals, const std::vector<Group>& groups, double reach) {
+  Random random(1);
+  KMeans split = kmeans(residuals, 2, random, 100);
+  for (int k = 1; k < 10; ++k) {
+    KMeans other = kmeans(residuals, 2, random, 100);
+    if (other.inertia < split.inertia) split = std::move(other);
+  }
+  const Eigen::RowVectorXd between = split.centers.row(1) - split.centers.row(0);
+  Ways ways{std::move(split.labels), between.norm(), 0};
+  if (!(ways.distance >= least_share * reach)) return {};
+  const Vector along = residuals * between.transpose() / ways.distance;
+  Group sides[2];
+  for (std::size_t i = 0; i < ways.of_row.size(); ++i) sides[ways.of_row[i]].push_back(i);
+  const std::size_t least = (ways.of_row.size() + 9) / 10;
+  if (std::min(sides[0].size(), sides[1].size()) < least) return {};
+  double variance = 0;
+  for (const auto& side : sides) {
+    const Vector values = along(side);
+    variance += (values.array() - values.mean()).square().mean() / 2;
+  }
+  ways.separation = variance > 0 ? ways.distance / std::sqrt(variance) : std::numeric_limits<double>::infinity();
+  const bool mixed = std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
+    return std::any_of(group.begin(), group.end(),
+                       [&](std::size_t i) { return ways.of_row[i] != ways.of_row[group[0]]; });
+  });
+  if (!mixed || !(ways.separation >= least_separation_of_all)) return {};
+  return ways;
+}
+
+/// Way 0 is that of the first row.
+Ways numbered(Ways ways) {
+  if (ways.of_row.front() == 1) {
+    for (int& way : ways.of_row) way = 1 - way;
+  }
+  return ways;
+}
+
 }  // namespace
 
 std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& rows) {
@@ -93,12 +133,19 @@ std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& ro
   Eigen::Index degrees = n;
   std::vector<Parting> partings;
   for (const auto& group : groups) {
-    partings.push_back(parted(along, group));
-    if (group.size() < 2) continue;
+    partings.push_back({group, {}, 0, 0});
+    if (group.size() < least_of_target) {
+      degrees -= static_cast<Eigen::Index>(group.size());
+      continue;
+    }
+    partings.back() = parted(along, group);
     scatter += partings.back().scatter;
     degrees -= 2;
   }
-  if (degrees < 1) return {};
+  if (std::none_of(groups.begin(), groups.end(), [](const Group& g) { return g.size() >= least_of_target; })) {
+    auto ways = two_ways_of_all(residuals, groups, reach);
+    return ways ? std::optional(numbered(std::move(*ways))) : std::nullopt;
+  }
   const double sd = std::sqrt(scatter / static_cast<double>(degrees));
 
   Ways ways{std::vector<int>(static_cast<std::size_t>(n), -1), 0, 0};
@@ -119,10 +166,7 @@ std::optional<Ways> two_ways(const Skill& skill, const std::vector<SkillRow>& ro
     if (both < 2) return {};
     tell_the_others(skill, rows, groups, ways.of_row);
   }
-  if (ways.of_row.front() == 1) {
-    for (int& way : ways.of_row) way = 1 - way;
-  }
-  return ways;
+  return numbered(std::move(ways));
 }
 
 int nearest_way(const std::vector<SkillRow>& rows, const Ways& ways, const Vector& change) {

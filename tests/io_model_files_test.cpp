@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "io_fixture.hpp"
+#include "lfdtools/io/covariance_file.hpp"
 #include "lfdtools/io/dmp_file.hpp"
 #include "lfdtools/io/experiment_file.hpp"
 #include "lfdtools/io/gmm_file.hpp"
@@ -314,6 +316,45 @@ TEST_CASE("a robot file is loaded by path") {
   REQUIRE(load_robot(folder.write("toy.json", robot_text()), silent).name == "toy");
   REQUIRE(refusal_of([&] { (void)load_robot(folder.write("bad.json", "{"), silent); }).fault == Fault::config);
   REQUIRE(refusal_of([&] { (void)load_robot(folder.file("none.json"), silent); }).fault == Fault::no_input);
+}
+
+TEST_CASE("a robot without a link that moves has no body") {
+  const ScratchFolder folder;
+  const std::string text = robot_text();
+  REQUIRE(load_robot_with_links(folder.write("toy.json", text), silent).links.size() == 1);
+  const std::string still = folder.write("still.json", changed(text, "\"frame\":3", "\"frame\":0"));
+  const Refusal refusal = refusal_of([&] { (void)load_robot_with_links(still, silent); });
+  REQUIRE(refusal.id == "robot.no_links");
+  REQUIRE(refusal.fault == Fault::config);
+  REQUIRE(refusal.place.pointer == "/links");
+  REQUIRE(refusal.place.file == still);
+}
+
+TEST_CASE("a covariance is read as it was written, one matrix a signal or one of all") {
+  CovarianceFile file;
+  file.header.columns = {"x", "y"};
+  file.header.labels.target = "3";
+  file.spread = Spread::predictive;
+  file.degrees_of_freedom = (Vector(2) << 7.5, std::numeric_limits<double>::infinity()).finished();
+  file.times = (Vector(3) << 0, 0.5, 1).finished();
+  file.mean = (Samples(3, 2) << 1, 2, 3, 4, 5, 6).finished();
+  const Matrix A = (Matrix(3, 3) << 4, 1, 0, 1, 5, 2, 0, 2, 6).finished();
+  for (const bool together : {false, true}) {
+    file.covariance = {A, 2 * A};
+    if (together) file.covariance = {Matrix::Identity(6, 6)};
+    const std::string text = text_of(file, write_covariance);
+    const CovarianceFile back = read_covariance(document(text));
+    REQUIRE(text_of(back, write_covariance) == text);
+    REQUIRE(back.covariance == file.covariance);
+    REQUIRE(back.mean == file.mean);
+    require_refused(changed(text, "\"t\":[0,0.5,1]", "\"t\":[0,0.5,0.5]"), read_covariance,
+                    "covariance.time_not_rising", "/t/2");
+    require_refused(changed(text, "\"t\":[0,0.5,1]", "\"t\":[0,0.5]"), read_covariance, "json.wrong_length", "/mean");
+    require_refused(changed(text, "predictive", "wide"), read_covariance, "covariance.spread", "/spread");
+    require_refused(changed(text, "[7.5,null]", "[7.5]"), read_covariance, "json.wrong_length", "/degrees_of_freedom");
+  }
+  file.covariance = {A, Matrix::Identity(2, 2)};
+  require_refused(text_of(file, write_covariance), read_covariance, "json.wrong_length", "/covariance/1");
 }
 
 TEST_CASE("an experiment states everything, and is read as it was written") {

@@ -52,3 +52,12 @@ TEST_CASE("What a scene cannot mean is refused with its place") {
           (void)read(scene(R"({"type":"plane","pose":{"position":[0,0,0],"orientation":[1,1,0,0]}})"));
         }).id == "rotation.not_unit");
 }
+
+TEST_CASE("A scene is loaded by path, and its faults are status 78") {
+  const ScratchFolder folder;
+  CapturedMessages captured;
+  CHECK(load_scene(folder.write("cell.json", scene(box)), captured.messages).obstacles.size() == 1);
+  const std::string bad = folder.write("bad.json", scene(R"({"type":"cone","pose":{"position":[0,0,0]}})"));
+  CHECK(refusal_of([&] { (void)load_scene(bad, captured.messages); }).fault == Fault::config);
+  CHECK(refusal_of([&] { (void)load_scene(folder.file("none.json"), captured.messages); }).fault == Fault::no_input);
+}

@@ -23,6 +23,8 @@ _lfdtools_options() {
                   "--retime --acceleration --all --speeds --accelerations --diagnostics --singularities" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
     ur10-fk) echo "$common --robot --tool --frame" ;;
+    arm-clearance) echo "$common $gates --seed --scene --self --robot --margin --tool --tool-radius --covariance" \
+                        "--goal-sd --frame --max-probability" ;;
     motion-compare) echo "$common $table --reference --duration -n --samples" ;;
   esac
 }
@@ -67,6 +69,9 @@ _lfdtools_words() {
     skill-generate:--via | skill-generate:--goal-at | skill-generate:--*-velocity | skill-generate:--approach) return 2 ;;
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint posture branch_change joint_speed joint_acceleration" \
                             "tcp_speed tcp_acceleration condition" ;;
+    arm-clearance:--no-gate) echo "clearance self_clearance probability" ;;
+    arm-clearance:--scene) echo "table peg-in-hole-B" ;;
+    *:--margin | *:--tool-radius | *:--goal-sd) return 2 ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
     *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start | *:--suggest) return 2 ;;
     *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--acceleration | *:--max-*) return 2 ;;
@@ -93,5 +98,5 @@ _lfdtools() {
 }
 
 # Where there is nothing to say (files, numbers), bash offers file names.
-complete -o bashdefault -o default -F _lfdtools demo-align demo-synth dmp-fit gmm-fit gmr-regress motion-compare \
+complete -o bashdefault -o default -F _lfdtools arm-clearance demo-align demo-synth dmp-fit gmm-fit gmr-regress motion-compare \
   mvgpr-train skill-generate skill-plot skill-validate ur10-fk ur10-ik
