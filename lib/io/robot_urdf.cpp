@@ -4,6 +4,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Geometry>
+#include <cctype>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -30,7 +31,13 @@ class FirstError : public console_bridge::OutputHandler {
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && text_.empty()) text_ = text;
   }
-  [[nodiscard]] std::string text() const { return text_.empty() ? "no robot description" : text_; }
+  /// In the form of our own sentences.
+  [[nodiscard]] std::string text() const {
+    if (text_.empty()) return "no robot description";
+    std::string text = text_.substr(0, text_.find_last_not_of(".\n ") + 1);
+    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+    return text;
+  }
 
  private:
   std::string text_;

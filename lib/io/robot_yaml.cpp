@@ -1,5 +1,6 @@
 // Built where yaml-cpp is.
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -101,6 +102,9 @@ Robot read_calibration(const std::string& text, const std::string& file, Message
     const Pose base = inverse(form.base);
     robot.frames["base"] = base;
     robot.frames["base_link"] = base * frame_in_base({}, "base_link");
+  } catch (const YAML::DeepRecursion& error) {
+    throw ConfigError("yaml.syntax", "it is nested too deeply",
+                      {file, static_cast<std::size_t>(error.mark.line) + 1, 0, ""});
   } catch (const YAML::ParserException& error) {
     throw ConfigError("yaml.syntax", error.msg, {file, static_cast<std::size_t>(error.mark.line) + 1, 0, ""});
   } catch (const YAML::Exception& error) {
