@@ -8,12 +8,12 @@
 //                                         the goals and the scene are left there as files
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <map>
 
+#include "lesson.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
 #include "lfdtools/methods.hpp"
@@ -23,7 +23,6 @@
 #include "lfdtools/validation.hpp"
 #include "lfdtools/ways.hpp"
 #include "planner.hpp"
-#include "teacher.hpp"
 #include "verdict.hpp"
 
 using namespace lfd;
@@ -31,68 +30,10 @@ using namespace lfd::scenes;
 
 namespace {
 
-constexpr double margin = 0.05;        // of what the teacher means [m]
-constexpr double least_shown = 0.005;  // of a demonstration; nearer ones are not kept [m]
-constexpr double seconds = 3;          // of motions
-constexpr int repetitions = 10;
-
 double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// What the teacher means at each hole, by hole and way, and the arm's branch meanwhile.
-struct Lesson {
-  int branch = 0;
-  std::vector<std::vector<Meant>> meant;  // of holes, then of new holes
-};
-
-/// A reason, or nothing where the lesson is complete.
-std::string teach(const Teacher& teacher, const Task& task, Lesson& lesson) {
-  const auto branches = teacher.branches();
-  if (branches.empty()) return "no_posture";
-  std::vector<Hole> places = task.holes;
-  // Round the box of holes, so that each is beside the one before.
-  std::reverse(places.begin() + 3, places.end());
-  places.insert(places.end(), task.new_holes.begin(), task.new_holes.end());
-  for (const int branch : branches) {
-    lesson = {branch, {}};
-    for (const Hole& place : places) {
-      std::vector<Meant> meant;
-      for (std::size_t way = 0; way < task.ways.size(); ++way) {
-        const Meant* like = lesson.meant.empty() ? nullptr : &lesson.meant.back()[way];
-        const auto path = teacher.plan(place.position, way, branch, like);
-        if (!path) break;
-        meant.push_back(*path);
-      }
-      if (meant.size() < task.ways.size()) break;
-      lesson.meant.push_back(std::move(meant));
-    }
-    if (lesson.meant.size() < places.size()) continue;
-    std::reverse(lesson.meant.begin() + 3, lesson.meant.begin() + 6);
-    return {};
-  }
-  return "no_way_round";
-}
-
-/// The demonstrations of one hole; each takes one of the ways and keeps the whole arm clear.
-std::vector<Trajectory> demonstrate(const Teacher& teacher, const std::vector<Meant>& meant, int branch,
-                                    const Random& random) {
-  std::vector<Trajectory> shown;
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    const Random stream = random.split(static_cast<std::uint64_t>(repetition));
-    const std::size_t way = static_cast<std::size_t>(stream.split(99).below(meant.size()));
-    for (std::uint64_t attempt = 0; attempt < 50; ++attempt) {
-      Trajectory one = perform([&](const Vector& phases) { return meant[way].positions(phases); }, seconds, 100,
-                               TeacherNoise(), stream.split(attempt));
-      const auto least = teacher.clearance(one.positions, branch);
-      if (!least || *least < least_shown) continue;
-      shown.push_back(std::move(one));
-      break;
-    }
-  }
-  return shown;
 }
 
 class Study {

@@ -98,6 +98,23 @@ function curvature(file, target,   line, cell, n, k, first, last, ax, ay, az, bx
   }
   return largest
 }
+# Least distance of the links to B's rod over the new holes, and at how many it is positive (arms_clear).
+function arms(variant,   i, file, cells, least, of_all) {
+  arms_clear = 0
+  of_all = 1e9
+  for (i = 1; i in new_hole; ++i) {
+    file = out "/B/" variant "/clearance/" new_hole[i] ".csv"
+    least = 1e9
+    while ((getline line < file) > 0) {
+      split(line, cells, ",")
+      if (cells[4] == "rod" && cells[5] < least) least = cells[5]
+    }
+    close(file)
+    if (least < 1e9) arms_clear += least > 0
+    if (least < of_all) of_all = least
+  }
+  return sprintf("%d of 4 clear, least distance %.0f mm", arms_clear, 1e3 * of_all)
+}
 # Least distance [m] of the hand to the obstacle's surface over all motions of a file; negative inside.
 function clearance(file,   line, cell, x, y, z, along, d, least, length_) {
   getline line < file; columns(line)
@@ -172,6 +189,10 @@ BEGIN {
   for (i = 1; i in new_hole; ++i) { d = clearance(out "/B/paper-full/motion/" new_hole[i] ".csv"); if (d < least_paper) least_paper = d }
   control = clearance(out "/B/control.csv")
   row("it avoids the obstacle without knowing it (hand path alone)", sprintf("least distance: default %.0f mm; paper-full %.0f mm; control: A's skill %.0f mm", 1e3 * least, 1e3 * least_paper, 1e3 * control), "over 0 for the skills; the control collides", least > 0 && least_paper > 0 && control < 0)
+
+  text = arms("default")
+  clear_arms = arms_clear
+  row("its whole arm avoids it as well", "default " text "; paper-full " arms("paper-full"), "every link clear of the rod at 4 of 4 (default)", clear_arms == 4)
 
   for (i = 1; i <= nA; ++i) shape(out "/A/reference/" hole_A[i] ".csv", i)
   for (i = 1; i <= 9; ++i) for (j = i + 1; j <= 9; ++j) {
