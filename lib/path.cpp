@@ -270,6 +270,34 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
   return path;
 }
 
+JointPath without_rest(const JointPath& path, double radius) {
+  const Eigen::Index T = path.joints.rows();
+  const auto near = [&](Eigen::Index t, Eigen::Index end) {
+    return (path.joints.row(t) - path.joints.row(end)).cwiseAbs().maxCoeff() <= radius;
+  };
+  Eigen::Index first = 0, last = T - 1;
+  while (first + 1 < T && near(first + 1, 0)) ++first;
+  while (last > 0 && near(last - 1, T - 1)) --last;
+  std::vector<Eigen::Index> kept{0};
+  for (Eigen::Index t = first + 1; t < last; ++t) {
+    if ((path.joints.row(t) - path.joints.row(kept.back())).cwiseAbs().maxCoeff() > radius / 10) kept.push_back(t);
+  }
+  if (T > 1) kept.push_back(T - 1);
+  JointPath moving = path;
+  moving.times = path.times(kept);
+  moving.joints = path.joints(kept, Eigen::all);
+  moving.residual = path.residual(kept);
+  moving.condition = path.condition(kept);
+  moving.midpoint_deviation = path.midpoint_deviation(kept);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    moving.branch[k] = path.branch[static_cast<std::size_t>(kept[k])];
+    moving.given[k] = path.given[static_cast<std::size_t>(kept[k])];
+  }
+  moving.branch.resize(kept.size());
+  moving.given.resize(kept.size());
+  return moving;
+}
+
 JointPath solve_path(const Robot& robot, const std::vector<Pose>& flange, const Vector& times,
                      const PathOptions& options) {
   return solve_path(InverseKinematics(robot), flange, times, options);

@@ -69,6 +69,13 @@ struct JointPath {
 [[nodiscard]] JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
                                    const PathOptions& options = {});
 
+/// The path without the rows in which the arm rests: all but the first of those that stay within `radius` of the first
+/// row, all but the last of those that stay within it of the last, and between them those within a tenth of it of the
+/// row before. A hand that settles on its goal goes to and fro by less than it can be held to, and a law of motion that
+/// followed it there exactly would have to stop at each turn.
+/// @param radius  largest joint distance [rad]
+[[nodiscard]] JointPath without_rest(const JointPath& path, double radius);
+
 /// As above for one robot.
 [[nodiscard]] JointPath solve_path(const Robot& robot, const std::vector<Pose>& flange, const Vector& times,
                                    const PathOptions& options = {});

@@ -94,11 +94,13 @@ class Spreads {
                       fmt::format("{} has no covariance for target {}", request_.covariance, target.value_or("(none)")),
                       recording.place(0));
     }
-    const Vector& times = recording.demonstration.trajectory.times;
-    if (found->times.size() != times.size() || !((found->times - times).cwiseAbs().maxCoeff() < 1e-6)) {
-      throw DataError("clearance.covariance_times",
-                      fmt::format("{} is of {} samples, the joints have {}, or their times differ", request_.covariance,
-                                  found->times.size(), times.size()),
+    // Times may differ, as those of a retimed path do: the samples are held against each other by their places below.
+    const Eigen::Index samples = recording.demonstration.trajectory.samples();
+    if (found->times.size() != samples) {
+      throw DataError("clearance.covariance_samples",
+                      fmt::format("{} is of {} samples, the joints have {}: ur10-ik leaves out or puts in rows with "
+                                  "--retime and without --given-rows, so take the probability from joints with neither",
+                                  request_.covariance, found->times.size(), samples),
                       recording.place(0));
     }
     const Samples mean = (found->mean * frame_.rotation.transpose()).rowwise() + frame_.position.transpose();

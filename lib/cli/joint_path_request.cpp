@@ -20,6 +20,8 @@ const std::vector<std::string> speed_names = {"qd1", "qd2", "qd3", "qd4", "qd5",
 const std::vector<std::string> acceleration_names = {"qdd1", "qdd2", "qdd3", "qdd4", "qdd5", "qdd6"};
 /// [rad/s^2], of movej in the URScript manual: 80 deg/s^2.
 constexpr double usual_acceleration = 1.4;
+/// A millimetre at a metre's reach: a generated motion strays by half of one before it settles within 0.1 mm.
+constexpr double at_rest = 1e-3;
 /// An interval may become 64.
 constexpr int most_halvings = 6;
 
@@ -129,6 +131,7 @@ class Answer {
   void write_path(const Recording& recording, const std::vector<Pose>& poses, LabelledTable& out) {
     const Vector& given = recording.demonstration.trajectory.times;
     JointPath path = solve_path(arm_, poses, given, options_);
+    if (request_.retime && path.joints.rows() > 1) path = moving(recording, path);
     const Vector times = path.times;
     std::optional<Rates> rates;
     if (request_.retime && path.joints.rows() > 1) rates = retimed(recording, path);
@@ -150,6 +153,18 @@ class Answer {
   struct Rates {
     Samples speeds, accelerations;
   };
+
+  JointPath moving(const Recording& recording, const JointPath& path) {
+    JointPath moving = without_rest(path, at_rest);
+    const Eigen::Index less = path.joints.rows() - moving.joints.rows();
+    if (less > 0) {
+      const std::string words = describe(recording.demonstration.labels);
+      run_.messages().note("ik.rest_cut",
+                           fmt::format("{}{} rows at rest are left out: nearer than {} rad to the first or last",
+                                       words.empty() ? "" : words + ": ", less, at_rest));
+    }
+    return moving;
+  }
 
   /// Gives the path the times of the fastest motion along it.
   Rates retimed(const Recording& recording, JointPath& path) {
@@ -176,10 +191,13 @@ class Answer {
   }
 
   void report_rows(const Recording& recording, const JointPath& path) {
-    const auto more = path.times.size() - recording.demonstration.trajectory.samples();
+    std::size_t more = 0, first = 0;
+    for (std::size_t row = path.given.size(); row-- > 0;) {
+      if (!path.inserted(row)) continue;
+      first = row;
+      ++more;
+    }
     if (more == 0) return;
-    std::size_t first = 0;
-    while (!path.inserted(first)) ++first;
     const std::string words = describe(recording.demonstration.labels);
     run_.messages().note("ik.refined",
                          fmt::format("{}{} rows put between those given, which are too far apart for the hand to keep "

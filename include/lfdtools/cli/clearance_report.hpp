@@ -34,7 +34,7 @@ void declare_clearance(Program& program, ClearanceRequest& request);
 /// @throws as load_robot_with_links, load_scene, read_covariance; Error(Fault::gate) gate.clearance,
 /// gate.self_clearance,
 ///         gate.probability;
-///         DataError [clearance.covariance_target], [clearance.covariance_times], [clearance.covariance_columns]
+///         DataError [clearance.covariance_target], [clearance.covariance_samples], [clearance.covariance_columns]
 void report_clearance(const ClearanceRequest& request, Run& run);
 
 }  // namespace lfd::cli
