@@ -240,6 +240,15 @@ Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& 
       .cwiseSqrt();
 }
 
+Vector covariance_factors(const SkillPredictor& predictor, const Reach& reach) {
+  const auto& calibration = predictor.skill().calibration;
+  if (!calibration) return {};
+  constexpr double level = 0.95;
+  const double share = factor(*calibration, BandKind::pointwise, level) / student_t_quantile((1 + level) / 2, infinite);
+  const Vector latent = position_variance(predictor, reach, linspace(0, 1, 2)).latent.cwiseMax(1e-300);
+  return share * share * (Vector::Ones(latent.size()) + calibration->target_variance.cwiseQuotient(latent));
+}
+
 std::optional<Calibration> calibrate(const Skill& skill, const std::vector<SkillRow>& rows,
                                      const SkillOptions& options) {
   const auto groups = groups_to_leave_out(rows);

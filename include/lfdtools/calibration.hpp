@@ -43,6 +43,11 @@ enum class BandKind {
 [[nodiscard]] Samples band(const SkillPredictor& predictor, const Reach& reach, const Vector& phases, BandKind kind,
                            double level = 0.95, double repetitions = std::numeric_limits<double>::infinity());
 
+/// Factors on the latent covariance of a motion, D, with which its 95 % intervals are the calibrated band's, but for
+/// what primitives miss of the recordings: (factor / normal quantile)^2 (latent + target_variance) / latent. Empty
+/// without a calibration.
+[[nodiscard]] Vector covariance_factors(const SkillPredictor& predictor, const Reach& reach);
+
 /// Leaves every target out in turn, learns from the others, and compares what is predicted with the mean of the
 /// target's rows. The error is that of hyperparameters searched anew, which know nothing of the target (but the kind of
 /// kernel, which is chosen once for all rows). The sd beside

@@ -65,7 +65,12 @@ class Spreads {
     if (!files_.empty()) {
       const CovarianceFile& file = file_of(recording, positions);
       try {
-        spread = hand_spread(file.covariance, frame_.rotation);
+        if (file.calibration.size() == 0) {
+          run_.messages().warning(
+              "clearance.not_calibrated",
+              request_.covariance + " has no calibration: chances are what the process says of itself");
+        }
+        spread = hand_spread(calibrated(file), frame_.rotation);
       } catch (const DataError& error) {
         throw DataError(error.id(), error.what(), {request_.covariance, 0, 0, "/covariance"});
       }

@@ -70,7 +70,8 @@ class Answer {
     if (!request_.covariance.empty()) {
       header_.labels = goal.labels;
       if (covariance_ == nullptr) covariance_ = &run_.beside(request_.covariance);
-      write_covariance_of(posterior, mean, from_goal, header_, request_, *covariance_);
+      write_covariance_of(posterior, mean, from_goal, covariance_factors(predictor_, predictor_.reach(goal)), header_,
+                          request_, *covariance_);
     }
     if (request_.samples > 0) return draws(posterior, goal, number, table);
     Samples rows = rows_of(mean, request_);

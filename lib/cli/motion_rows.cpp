@@ -43,11 +43,13 @@ void report_approach(const Course& course, const Motion& motion, const std::stri
 }
 
 void write_covariance_of(const MotionPosterior& posterior, const Motion& motion, const GoalSpread& goal,
-                         const FileHeader& header, const MotionRequest& request, Output& out) {
+                         const Vector& calibration, const FileHeader& header, const MotionRequest& request,
+                         Output& out) {
   const Eigen::Index T = motion.times.size();
   const Eigen::Index D = motion.positions.cols();
-  CovarianceFile file{header,       request.spread(), Vector(D),
-                      motion.times, motion.positions, motion_covariance(posterior, motion.times, request.spread())};
+  CovarianceFile file{
+      header,       request.spread(), request.spread() == Spread::latent ? calibration : Vector(), Vector(D),
+      motion.times, motion.positions, motion_covariance(posterior, motion.times, request.spread())};
   for (const auto& block : posterior.blocks) {
     for (const int j : block.outputs) file.degrees_of_freedom[j] = block.degrees_of_freedom;
   }

@@ -22,6 +22,7 @@ void report_approach(const Course& course, const Motion& motion, const std::stri
 
 /// One document of --covariance; a goal that is not exactly known makes it joint.
 void write_covariance_of(const MotionPosterior& posterior, const Motion& motion, const GoalSpread& goal,
-                         const FileHeader& header, const MotionRequest& request, Output& out);
+                         const Vector& calibration, const FileHeader& header, const MotionRequest& request,
+                         Output& out);
 
 }  // namespace lfd::cli

@@ -14,8 +14,8 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   CovarianceFile file;
   file.header = read_header(document, "lfdtools.covariance");
   const JsonView root = document.root();
-  root.only({"format", "version", "columns", "target", "demo", "teacher", "spread", "degrees_of_freedom", "t", "mean",
-             "covariance", "provenance"});
+  root.only({"format", "version", "columns", "target", "demo", "teacher", "spread", "degrees_of_freedom", "calibration",
+             "t", "mean", "covariance", "provenance"});
   const std::string spread = root.at("spread").string();
   if (spread != "latent" && spread != "predictive") {
     root.at("spread").fail("covariance.spread", "the spread is latent or predictive");
@@ -28,6 +28,10 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   for (Eigen::Index a = 0; a < D; ++a) {
     const JsonView value = freedom.at(static_cast<std::size_t>(a));
     if (!value.is_null()) file.degrees_of_freedom[a] = value.positive();
+  }
+  if (const auto calibration = root.find("calibration")) {
+    file.calibration = calibration->vector(D);
+    for (std::size_t a = 0; a < calibration->size(); ++a) (void)calibration->at(a).positive();
   }
   file.times = root.at("t").vector();
   const Eigen::Index T = file.times.size();
@@ -49,6 +53,21 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   return file;
 }
 
+std::vector<Matrix> calibrated(const CovarianceFile& file) {
+  std::vector<Matrix> scaled = file.covariance;
+  if (file.calibration.size() == 0) return scaled;
+  const Eigen::Index T = file.times.size();
+  if (scaled.size() > 1 || file.calibration.size() == 1) {
+    for (std::size_t a = 0; a < scaled.size(); ++a) scaled[a] *= file.calibration[static_cast<Eigen::Index>(a)];
+    return scaled;
+  }
+  const Vector roots = file.calibration.cwiseSqrt();
+  for (Eigen::Index a = 0; a < roots.size(); ++a) {
+    for (Eigen::Index b = 0; b < roots.size(); ++b) scaled.front().block(a * T, b * T, T, T) *= roots[a] * roots[b];
+  }
+  return scaled;
+}
+
 void write_covariance(const CovarianceFile& file, Output& out) {
   double numbers = 0;
   for (const Matrix& part : file.covariance) numbers += static_cast<double>(part.size());
@@ -63,7 +82,9 @@ void write_covariance(const CovarianceFile& file, Output& out) {
   json.member("spread", file.spread == Spread::latent ? "latent" : "predictive");
   json.key("degrees_of_freedom").begin_array();
   for (const double nu : file.degrees_of_freedom) std::isfinite(nu) ? json.number(nu) : json.null();
-  json.end_array().member("t", file.times).key("mean").matrix(file.mean).key("covariance");
+  json.end_array();
+  if (file.calibration.size() > 0) json.member("calibration", file.calibration);
+  json.member("t", file.times).key("mean").matrix(file.mean).key("covariance");
   if (file.covariance.size() == 1 && file.header.columns.size() > 1) {
     json.matrix(file.covariance.front());
   } else {

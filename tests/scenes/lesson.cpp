@@ -16,9 +16,8 @@ std::string teach(const Teacher& teacher, const Task& task, Lesson& lesson) {
   std::vector<Hole> places = task.holes;
   // Round the box of holes, so that each is beside the one before.
   std::reverse(places.begin() + 3, places.end());
-  places.insert(places.end(), task.new_holes.begin(), task.new_holes.end());
   for (const int branch : branches) {
-    lesson = {branch, {}};
+    lesson = {branch, {}, {}};
     for (const Hole& place : places) {
       std::vector<Meant> meant;
       for (std::size_t way = 0; way < task.ways.size(); ++way) {
@@ -31,7 +30,13 @@ std::string teach(const Teacher& teacher, const Task& task, Lesson& lesson) {
       lesson.meant.push_back(std::move(meant));
     }
     if (lesson.meant.size() < places.size()) continue;
-    std::reverse(lesson.meant.begin() + 3, lesson.meant.begin() + 6);
+    std::reverse(lesson.meant.begin() + 3, lesson.meant.end());
+    for (const Hole& hole : task.new_holes) {
+      lesson.of_new_holes.emplace_back();
+      for (std::size_t way = 0; way < task.ways.size(); ++way) {
+        lesson.of_new_holes.back().push_back(teacher.plan(hole.position, way, branch, &lesson.meant.front()[way]));
+      }
+    }
     return {};
   }
   return "no_way_round";

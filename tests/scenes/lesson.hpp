@@ -1,6 +1,7 @@
 // What a teacher means and shows in one scene.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ inline constexpr int repetitions = 10;  ///< demonstrations a hole
 /// What the teacher means at each hole, by hole and way, and the arm's branch meanwhile.
 struct Lesson {
   int branch = 0;
-  std::vector<std::vector<Meant>> meant;  // of holes, then of new holes
+  std::vector<std::vector<Meant>> meant;                        // of holes, by way
+  std::vector<std::vector<std::optional<Meant>>> of_new_holes;  // nothing where the teacher finds no way either
 };
 
 /// Plans the way to every hole. @return a reason why there is no lesson, or nothing

@@ -43,7 +43,7 @@ class Study {
         random_(Random(two_ways ? 2 : 1).split(static_cast<std::uint64_t>(number))),
         task_(draw_task(two_ways, random_.split(1))),
         teacher_(robot, task_, margin),
-        fcl_(robot, task_.obstacles) {}
+        fcl_(robot, task_.obstacles, task_.ground) {}
 
   void run(const std::string& folder) {
     if (const std::string reason = teach(teacher_, task_, lesson_); !reason.empty()) return set_aside(reason);
@@ -61,6 +61,7 @@ class Study {
     }
     if (!folder.empty()) write(folder);
     judge_methods();
+    judge_parted();
     judge_controls();
     judge_planners();
   }
@@ -175,6 +176,36 @@ class Study {
     }
   }
 
+  /// The opponents, learnt of each way by itself, as the default skill does: what is then left is the learning.
+  void judge_parted() {
+    if (!ways_) return;
+    const PreparationOptions preparation;
+    std::vector<TrainingTarget> parted[2];
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      std::vector<Trajectory> of_way[2];
+      for (const auto& shown : targets_[i].demonstrations) of_way[ways_->of_row[row++]].push_back(shown);
+      for (const int way : {0, 1}) {
+        if (of_way[way].empty()) continue;
+        parted[way].push_back(training_target(targets_[i].labels, of_way[way], preparation, {true, true}, i));
+      }
+    }
+    for (const Method& method : methods()) {
+      if (!method.same_as.empty() || method.name.starts_with("skill") || method.name == "line") continue;
+      std::vector<Predictor> predictors;
+      for (const auto& targets : parted) {
+        Fold fold;
+        for (const auto& target : targets) fold.push_back(&target);
+        if (fold.size() >= 2) predictors.push_back(method.train(fold, preparation));
+      }
+      if (predictors.size() < 2) continue;
+      for (const Hole& hole : task_.new_holes) {
+        const auto way = static_cast<std::size_t>(nearest_way(rows_, *ways_, hole.position - task_.start));
+        judge_path(method.name + "+ways", hole, predictors[way](query(hole)).path, 0, fcl_);
+      }
+    }
+  }
+
   /// What is not learnt from the demonstrations of this scene, or not judged in it.
   void judge_controls() {
     // The demonstration that goes furthest from the straight way, moved to each new hole.
@@ -188,6 +219,16 @@ class Study {
     const Vector phases = linspace(0, 1, phase_count);
     for (const Hole& hole : task_.new_holes) {
       judge_path("largest-detour", hole, straight_line(task_.start, hole.position, phases) + *furthest, 0, fcl_);
+    }
+    for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
+      const auto& meant = lesson_.of_new_holes[i].front();
+      if (meant) {
+        judge_path("teacher", task_.new_holes[i], meant->positions(phases), 0, fcl_);
+      } else {
+        Verdict none;
+        none.reason = "no_way_round";
+        row("teacher", task_.new_holes[i].target, none, 0, 0);
+      }
     }
     // A's skill: the same hand, taught where there is no obstacle.
     std::vector<TrainingTarget> free;
@@ -206,7 +247,7 @@ class Study {
     // The obstacle moved after teaching, to where the hand now goes.
     std::vector<Solid> moved = task_.obstacles;
     for (auto& solid : moved) solid.pose.position += (task_.berth + margin) * task_.ways.front();
-    const FclScene elsewhere(teacher_.arm().robot(), moved);
+    const FclScene elsewhere(teacher_.arm().robot(), moved, task_.ground);
     for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
       judge_path("skill-obstacle-moved", task_.new_holes[i], skill_paths_[i], 0, elsewhere);
     }
@@ -266,8 +307,10 @@ class Study {
     }
     std::ofstream scene(folder + "/scene.json");
     scene << R"({"format":"lfdtools.scene","version":1,"frame":"base","obstacles":[)";
-    for (std::size_t i = 0; i < task_.obstacles.size(); ++i) {
-      const Solid& box = task_.obstacles[i];
+    std::vector<Solid> solids = task_.obstacles;
+    solids.insert(solids.end(), task_.ground.begin(), task_.ground.end());
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      const Solid& box = solids[i];
       const Quaternion q = quaternion_from_rotation(box.pose.rotation);
       scene << fmt::format(
           R"({}{{"name":"{}","type":"box","pose":{{"position":[{},{},{}],"orientation":[{},{},{},{}]}},"size":[{},{},{}]}})",

@@ -15,8 +15,8 @@ Hole hole(const std::string& name, const Vector3& position) {
 
 Task draw_task(bool two_ways, Random random) {
   Task task;
-  task.start = {random.uniform(-0.40, -0.25), random.uniform(0.40, 0.50), random.uniform(0.45, 0.65)};
-  const Vector3 middle(random.uniform(-0.02, 0.12), random.uniform(0.74, 0.84), random.uniform(0.17, 0.35));
+  task.start = {random.uniform(-0.40, -0.25), random.uniform(0.40, 0.50), random.uniform(0.50, 0.75)};
+  const Vector3 middle(random.uniform(-0.02, 0.12), random.uniform(0.74, 0.84), random.uniform(0.30, 0.50));
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) {
       const Vector3 offset(0.15 * (column - 1), 0, 0.075 - 0.15 * row);
@@ -45,8 +45,13 @@ Task draw_task(bool two_ways, Random random) {
   box.shape = SolidShape::box;
   box.size = {thickness, near + far, length};
   box.pose.rotation << along, way, along.cross(way);
-  box.pose.position = task.start + random.uniform(0.3, 0.55) * (middle - task.start) + (near - far) / 2 * way;
+  box.pose.position = task.start + random.uniform(0.25, 0.5) * (middle - task.start) + (near - far) / 2 * way;
   task.obstacles.push_back(box);
+  Solid table;
+  table.name = "table";
+  table.size = {4, 4, 1};
+  table.pose.position = {0, 0, -0.5};
+  task.ground.push_back(table);
   task.ways.push_back(way);
   if (two_ways) task.ways.push_back(-way);
   task.berth = std::max(near, two_ways ? far : 0.0);

@@ -18,6 +18,7 @@ struct Task {
   std::vector<Hole> new_holes;                ///< four between them
   Matrix3 orientation = Matrix3::Identity();  ///< of the flange, throughout: z into the holes, +y
   std::vector<Solid> obstacles;               ///< in the base
+  std::vector<Solid> ground;                  ///< the table that the arm stands on: a box, its top at z = 0
   std::vector<Vector3> ways;                  ///< unit, across the way from start to holes: one or two opposite ones
   double berth = 0;                           ///< how far off the straight way the obstacle's edge lies, largest [m]
 };

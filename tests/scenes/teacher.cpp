@@ -56,19 +56,38 @@ std::optional<Samples> joints_along(const InverseKinematics& arm, const Matrix3&
 }
 
 Teacher::Teacher(const Robot& robot, const Task& task, double margin)
-    : task_(task), arm_(robot), bodies_(robot, task.obstacles), margin_(margin) {}
+    : task_(task), arm_(robot), bodies_(robot, task.obstacles), ground_(robot, task.ground), margin_(margin) {}
+
+double Teacher::to_ground(const Joints& q) const {
+  double nearest = 1e3;
+  for (const auto& pair : ground_.pairs(q)) {
+    const bool base = ground_.bodies()[static_cast<std::size_t>(pair.link)].frame <= 1;
+    if (!base) nearest = std::min(nearest, pair.distance);
+  }
+  return nearest;
+}
+
+double Teacher::missing(const Joints& q) const {
+  return std::max({0.0, margin_ - bodies_.least(q), 0.2 * margin_ - to_ground(q), -ground_.least_of_arm_itself(q)});
+}
+
+double Teacher::least(const Joints& q) const {
+  return std::min({bodies_.least(q), to_ground(q), ground_.least_of_arm_itself(q)});
+}
 
 std::vector<int> Teacher::branches() const {
   std::vector<std::pair<double, int>> clear;
   for (int branch = 0; branch < 8; ++branch) {
     std::vector<Hole> places = task_.holes;
     places.push_back({"start", task_.start});
-    double least = margin_;
+    double nearest = 1;
+    bool stands = true;
     for (const auto& place : places) {
       const auto q = joints_at(arm_, task_.orientation, branch, place.position);
-      least = std::min(least, q ? bodies_.least(*q) : unreachable);
+      stands = stands && q && missing(*q) == 0;
+      if (stands) nearest = std::min(nearest, bodies_.least(*q));
     }
-    if (least >= margin_) clear.emplace_back(-least, branch);
+    if (stands) clear.emplace_back(-nearest, branch);
   }
   std::stable_sort(clear.begin(), clear.end());
   std::vector<int> branches;
@@ -77,13 +96,13 @@ std::vector<int> Teacher::branches() const {
 }
 
 std::optional<double> Teacher::clearance(const Samples& positions, int branch) const {
-  double least = 1e3;
+  double nearest = 1e3;
   for (Eigen::Index t = 0; t < positions.rows(); ++t) {
     const auto q = joints_at(arm_, task_.orientation, branch, positions.row(t).transpose());
     if (!q) return {};
-    least = std::min(least, bodies_.least(*q));
+    nearest = std::min(nearest, least(*q));
   }
-  return least;
+  return nearest;
 }
 
 Meant Teacher::shortened(Meant meant, int branch) const {
@@ -95,7 +114,7 @@ Meant Teacher::shortened(Meant meant, int branch) const {
   const Samples line_slopes = (line.bottomRows(checked - 1) - line.topRows(checked - 1)) / h;
   const auto hinge = [&](const Vector3& position) {
     const auto q = joints_at(arm_, task_.orientation, branch, position);
-    const double short_of = std::max(0.0, margin_ - (q ? bodies_.least(*q) : unreachable));
+    const double short_of = q ? missing(*q) : margin_ - unreachable;
     return short_of * short_of;
   };
   const Objective cost = [&](const Vector& x, Vector& gradient) {
@@ -127,11 +146,11 @@ Meant Teacher::shortened(Meant meant, int branch) const {
 
 bool Teacher::holds(const Meant& meant, std::size_t way, int branch) const {
   const Samples path = meant.positions(linspace(0, 1, 161));
-  const auto least = clearance(path, branch);
-  if (!least || *least < 0.75 * margin_) return false;
   const auto joints = joints_along(arm_, task_.orientation, branch, path);
+  if (!joints) return false;
   for (Eigen::Index t = 0; t < path.rows(); ++t) {
     if (t > 0 && (joints->row(t) - joints->row(t - 1)).cwiseAbs().maxCoeff() > 0.3) return false;
+    if (missing(joints->row(t).transpose()) > 0.25 * margin_ || least(joints->row(t).transpose()) < 0) return false;
     if (condition_number(jacobian(arm_.robot(), joints->row(t).transpose())) > worst_condition) return false;
   }
   // On its side: where the hand passes the middle of the obstacle, along the straight way.
@@ -145,7 +164,7 @@ bool Teacher::holds(const Meant& meant, std::size_t way, int branch) const {
 std::optional<Meant> Teacher::planned(const Vector3& goal, int branch) const {
   const auto free = [&](const Vector3& position) {
     const auto q = joints_at(arm_, task_.orientation, branch, position);
-    return q && bodies_.least(*q) > 0.5 * margin_;
+    return q && missing(*q) < 0.5 * margin_;
   };
   const auto points = plan_hand(task_.start, goal, free);
   if (!points) return {};
@@ -173,7 +192,7 @@ std::optional<Meant> Teacher::planned(const Vector3& goal, int branch) const {
 std::optional<Meant> Teacher::plan(const Vector3& goal, std::size_t way, int branch, const Meant* like) const {
   if (like != nullptr) {
     Meant meant = shortened({task_.start, goal, like->coefficients}, branch);
-    return holds(meant, way, branch) ? std::optional(std::move(meant)) : std::nullopt;
+    if (holds(meant, way, branch)) return meant;
   }
   for (const double size : {1.0, 2.0}) {
     Meant bump{task_.start, goal, Matrix::Zero(3, bumps)};

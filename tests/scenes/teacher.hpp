@@ -27,7 +27,8 @@ struct Meant {
 
 class Teacher {
  public:
-  /// @param margin  that the whole arm keeps from obstacles while nothing is noisy [m]
+  /// @param margin  that the whole arm keeps from obstacles while nothing is noisy [m]; a fifth of it from the table,
+  /// for the shoulder always turns 2 cm above it, and none from itself, whose links rest side by side
   Teacher(const Robot& robot, const Task& task, double margin);
 
   /// Branches in which the arm stands clear at the start and at every hole, clearest first.
@@ -35,11 +36,12 @@ class Teacher {
 
   /// The way to a goal round the obstacle: the least mean square of the hand's speed with the whole arm `margin` clear
   /// (L-BFGS-B on a hinge), from what is meant at another goal, so that the hand goes on as it went there; without one,
-  /// from a bump towards the way or, where that fails, from a path of RRT-Connect. Empty if nothing comes to a path
-  /// that keeps 3/4 of the margin, a condition number under 25 and its side of the obstacle.
+  /// or where that fails, from a bump towards the way or, where that fails, from a path of RRT-Connect. Empty if
+  /// nothing comes to a path that keeps 3/4 of the margin, a condition number under 25 and its side of the obstacle.
   [[nodiscard]] std::optional<Meant> plan(const Vector3& goal, std::size_t way, int branch, const Meant* like) const;
 
-  /// Least clearance of the arm along a hand path [m]; nothing where it is out of reach.
+  /// Least distance of the arm from obstacles, table and itself along a hand path [m]; nothing where it is out of
+  /// reach.
   [[nodiscard]] std::optional<double> clearance(const Samples& positions, int branch) const;
 
   [[nodiscard]] const InverseKinematics& arm() const { return arm_; }
@@ -49,9 +51,14 @@ class Teacher {
   [[nodiscard]] bool holds(const Meant& meant, std::size_t way, int branch) const;
   [[nodiscard]] std::optional<Meant> planned(const Vector3& goal, int branch) const;
 
+  /// What is missing from the margins, 0 where all are kept [m].
+  [[nodiscard]] double missing(const Joints& q) const;
+  [[nodiscard]] double least(const Joints& q) const;
+  [[nodiscard]] double to_ground(const Joints& q) const;
+
   const Task& task_;
   InverseKinematics arm_;
-  ArmClearance bodies_;
+  ArmClearance bodies_, ground_;
   double margin_;
 };
 

@@ -42,15 +42,30 @@ Shape shape_of(const Solid& solid) {
   throw std::invalid_argument("scenes have no planes");
 }
 
+double signed_distance(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b) {
+  fcl::CollisionRequestd touch(1, true);
+  touch.gjk_solver_type = fcl::GST_LIBCCD;
+  fcl::CollisionResultd touched;
+  if (fcl::collide(&a, &b, touch, touched) > 0) {
+    std::vector<fcl::Contactd> contacts;
+    touched.getContacts(contacts);
+    return contacts.empty() ? 0.0 : -std::abs(contacts.front().penetration_depth);
+  }
+  fcl::DistanceRequestd request;
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  fcl::DistanceResultd result;
+  return std::max(0.0, fcl::distance(&a, &b, request, result));
+}
+
 }  // namespace
 
 struct FclScene::Bodies {
   std::vector<Shape> links;
   std::vector<Eigen::Isometry3d> in_frame;  // of each link's capsule
-  std::vector<fcl::CollisionObjectd> obstacles;
+  std::vector<fcl::CollisionObjectd> obstacles, ground;
 };
 
-FclScene::FclScene(const Robot& robot, const std::vector<Solid>& obstacles)
+FclScene::FclScene(const Robot& robot, const std::vector<Solid>& obstacles, const std::vector<Solid>& ground)
     : robot_(robot), bodies_(std::make_unique<Bodies>()) {
   for (const Capsule& link : robot.links) {
     const Vector3 along = link.to - link.from;
@@ -61,37 +76,36 @@ FclScene::FclScene(const Robot& robot, const std::vector<Solid>& obstacles)
     bodies_->in_frame.push_back(T);
   }
   for (const Solid& solid : obstacles) bodies_->obstacles.emplace_back(shape_of(solid), transform(solid.pose));
+  for (const Solid& solid : ground) bodies_->ground.emplace_back(shape_of(solid), transform(solid.pose));
 }
 
 FclScene::~FclScene() = default;
 
 double FclScene::distance(const Joints& q) const {
   const auto frames = joint_frames(robot_, q);
-  double least = 1e3;
+  std::vector<fcl::CollisionObjectd> links;
   for (std::size_t i = 0; i < bodies_->links.size(); ++i) {
     const auto frame = static_cast<std::size_t>(robot_.links[i].frame);
-    const fcl::CollisionObjectd link(bodies_->links[i], transform(frames[frame]) * bodies_->in_frame[i]);
+    links.emplace_back(bodies_->links[i], transform(frames[frame]) * bodies_->in_frame[i]);
+  }
+  double least = 1e3;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const int frame = robot_.links[i].frame;
     for (const auto& obstacle : bodies_->obstacles) {
-      fcl::CollisionRequestd touch(1, true);
-      touch.gjk_solver_type = fcl::GST_LIBCCD;
-      fcl::CollisionResultd touched;
-      if (fcl::collide(&link, &obstacle, touch, touched) > 0) {
-        std::vector<fcl::Contactd> contacts;
-        touched.getContacts(contacts);
-        least = std::min(least, contacts.empty() ? 0.0 : -std::abs(contacts.front().penetration_depth));
-        continue;
-      }
-      fcl::DistanceRequestd request;
-      request.gjk_solver_type = fcl::GST_LIBCCD;
-      fcl::DistanceResultd result;
-      least = std::min(least, std::max(0.0, fcl::distance(&link, &obstacle, request, result)));
+      if (frame > 0) least = std::min(least, signed_distance(links[i], obstacle));
+    }
+    for (const auto& obstacle : bodies_->ground) {
+      if (frame > 1) least = std::min(least, signed_distance(links[i], obstacle));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (std::abs(frame - robot_.links[k].frame) > 1) least = std::min(least, signed_distance(links[i], links[k]));
     }
   }
   return least;
 }
 
 double least_distance(const FclScene& scene, const Samples& joints) {
-  constexpr int between = 4;
+  constexpr int between = 2;
   double least = scene.distance(joints.row(0).transpose());
   for (Eigen::Index t = 1; t < joints.rows(); ++t) {
     for (int k = 1; k <= between; ++k) {

@@ -26,10 +26,12 @@ struct Verdict {
 /// clear.
 class FclScene {
  public:
-  FclScene(const Robot& robot, const std::vector<Solid>& obstacles);
+  /// @param ground  what the arm stands on: links of frames 0 and 1 do not count against it
+  FclScene(const Robot& robot, const std::vector<Solid>& obstacles, const std::vector<Solid>& ground);
   ~FclScene();
 
-  /// Least signed distance of any link to any obstacle at these joints [m]; FCL's penetration depth where they overlap.
+  /// Least signed distance at these joints of any link to any obstacle or to another link, whose frames are not
+  /// neighbours [m]; FCL's penetration depth where they overlap.
   [[nodiscard]] double distance(const Joints& q) const;
 
  private:
@@ -40,7 +42,7 @@ class FclScene {
 
 /// Judges a hand path as ur10-ik would with its gates, started where the demonstrations started (their branch): poses
 /// out of reach, joint steps over 0.5 rad, another branch, joint speed over a path of `seconds`, condition number over
-/// 30 refuse it. Then FCL judges joints at the samples and at three points between any two.
+/// 30 refuse it. Then FCL judges joints at the samples and midway between any two (a hand moves by 2 mm).
 [[nodiscard]] Verdict judge(const InverseKinematics& arm, const FclScene& scene, const Matrix3& orientation,
                             const Samples& path, const Joints& demonstrated_start, int branch, double seconds);
 

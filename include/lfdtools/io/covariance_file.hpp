@@ -10,6 +10,7 @@ namespace lfd {
 struct CovarianceFile {
   FileHeader header;  ///< columns: D signals
   Spread spread = Spread::latent;
+  Vector calibration;              ///< D factors on the covariance that held on targets left out; empty: not calibrated
   Vector degrees_of_freedom;       ///< D, of the Student-t of each signal; infinite ones are written as null
   Vector times;                    ///< T [s]
   Samples mean;                    ///< T x D [m]
@@ -19,6 +20,9 @@ struct CovarianceFile {
 /// @throws as read_header and JsonView; [json.wrong_length] where mean or covariance do not fit columns and times,
 ///         [covariance.time_not_rising]
 [[nodiscard]] CovarianceFile read_covariance(const JsonDocument& document);
+
+/// The covariance times its calibration: of signals a and b, the root of the product of theirs.
+[[nodiscard]] std::vector<Matrix> calibrated(const CovarianceFile& file);
 
 /// One line.
 /// @throws DataError [covariance.too_large] over 2 10^7 numbers: a larger time step makes fewer

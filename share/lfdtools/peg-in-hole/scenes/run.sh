@@ -6,7 +6,8 @@
 #
 #   sh share/lfdtools/peg-in-hole/scenes/run.sh
 #
-# LFD_ONE_WAY and LFD_TWO_WAYS: how many scenes of each kind (134, 66). Scenes that the teacher cannot show, or whose
+# LFD_ONE_WAY and LFD_TWO_WAYS: how many scenes of each kind (134, 66); LFD_FIRST: number of the first (1001; smaller ones
+# served to write the study). Scenes that the teacher cannot show, or whose
 # straight way is clear to two new holes or more, are set aside and counted. Results under build/scenes: scenes.csv, every
 # motion; table.txt, which is printed too.
 set -eu
@@ -16,6 +17,7 @@ build=${LFD_BUILD_DIR:-$root/build/release}
 out=${LFD_OUT_DIR:-$root/build}/scenes
 [ -x "$build/tests/scene-study" ] || sh "$root/share/lfdtools/setup.sh" --tests
 export LFD_STUDY="$build/tests/scene-study"
+first=${LFD_FIRST:-1001}
 jobs=$(nproc 2>/dev/null || echo 2)
 mkdir -p "$out"
 work=$(mktemp -d)
@@ -25,14 +27,14 @@ export work
 
 # scenes KIND COUNT: the first COUNT scenes of a kind that are not set aside, whatever the number of processors.
 scenes() {
-  next=1
+  next=$first
   kept=0
   while [ "$kept" -lt "$2" ]; do
-    last=$((next + 15))
+    last=$((next + 63))
     for number in $(seq $next $last); do echo "$1 $number"; done |
       xargs -P "$jobs" -L 1 sh -c '"$LFD_STUDY" $0 $1 >"$work/$0-$1.new" && mv "$work/$0-$1.new" "$work/$0-$1"'
     kept=0
-    for number in $(seq 1 $last); do
+    for number in $(seq "$first" $last); do
       [ "$kept" -lt "$2" ] || break
       cat "$work/$1-$number" >>"$work/$1.csv.new"
       grep -q ',set_aside,' "$work/$1-$number" || kept=$((kept + 1))

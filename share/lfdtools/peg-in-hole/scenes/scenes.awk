@@ -33,6 +33,27 @@ function wilson(k, n,   p, middle, half) {
   half = z / (1 + z * z / n) * sqrt(p * (1 - p) / n + z * z / (4 * n * n))
   return sprintf("%5.1f (%.1f to %.1f)", 100 * p, 100 * (middle - half < 0 ? 0 : middle - half), 100 * (middle + half > 1 ? 1 : middle + half))
 }
+# @param without  names left aside besides skills and planners   @param parted  of the others take those with +ways too
+function gain_over(words, without, parted,   m, name, best, gain, n, i, motion, sum, squares, s, mean, sd) {
+  best = ""
+  for (m = 1; m <= count; ++m) {
+    name = methods[m]
+    if (name ~ /^skill/ || name == "rrt-connect" || name == "prm" || index(" " without " ", " " name " ")) continue
+    if ((name ~ /[+]ways$/) != parted) continue
+    if (best == "" || outcome[ways "," name ",clear"] > outcome[ways "," best ",clear"]) best = name
+  }
+  if (best == "" || motions[ways "," best] == 0) return
+  for (i = 1; i <= motion_count; ++i) {
+    motion = all_motions[i]
+    if (ways_of[motion] != ways || !((motion "," best) in clear)) continue
+    if (!(scene_of[motion] in gain)) { ++n; gain[scene_of[motion]] = 0 }
+    gain[scene_of[motion]] += (clear[motion ",skill"] - clear[motion "," best]) / 4
+  }
+  for (s in gain) { sum += gain[s]; squares += gain[s] ^ 2 }
+  mean = sum / n
+  sd = n > 1 ? sqrt((squares - n * mean * mean) / (n - 1)) : 0
+  printf "motions that the skill clears less those of the best of %s (%s): %.1f points (%.1f to %.1f)\n", words, best, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
+}
 END {
   for (ways = 1; ways <= 2; ++ways) {
     if (scenes[ways ",skill"] == 0) continue
@@ -45,27 +66,12 @@ END {
       if (n == 0) continue
       printf "%-22s %-22s %-22s %-22s %7.1f %7.2f %7.2f %7.1f %8.4f\n", methods[m], wilson(whole[key], scenes[key]), wilson(outcome[key ",collided"], n), wilson(outcome[key ",refused"], n), 100 * outside[key] / n, hand[key] / n, judged[key] ? joint[key] / judged[key] : 0, jerk[key] / n, seconds[key] / n
     }
-    # The opponent that clears most motions, and by how many of a scene's four the skill clears more: mean and normal
-    # interval over scenes.
-    best = ""
-    for (m = 1; m <= count; ++m) {
-      name = methods[m]
-      if (name ~ /^skill/ || name == "rrt-connect" || name == "prm") continue
-      if (best == "" || outcome[ways "," name ",clear"] > outcome[ways "," best ",clear"]) best = name
-    }
-    delete gain
-    n = 0
-    for (i = 1; i <= motion_count; ++i) {
-      motion = all_motions[i]
-      if (ways_of[motion] != ways) continue
-      if (!(scene_of[motion] in gain)) { ++n; gain[scene_of[motion]] = 0 }
-      gain[scene_of[motion]] += (clear[motion ",skill"] - clear[motion "," best]) / 4
-    }
-    sum = 0; squares = 0
-    for (s in gain) { sum += gain[s]; squares += gain[s] ^ 2 }
-    mean = sum / n
-    sd = n > 1 ? sqrt((squares - n * mean * mean) / (n - 1)) : 0
-    printf "share of motions that the skill clears, less that of the best opponent (%s): %.1f points (%.1f to %.1f)\n\n", best, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
+    # The opponent that clears most motions, and by what share of a scene's four the skill clears more: mean and normal
+    # interval over scenes. Of all, and of those that learn; the last have the ways parted as the skill has.
+    gain_over("every opponent", "teacher largest-detour", 0)
+    gain_over("every opponent and the largest detour", "teacher", 0)
+    gain_over("opponents with the ways parted", "teacher largest-detour", 1)
+    print ""
   }
   split("under 0.01,0.01 to 0.1,over 0.1", names, ",")
   printf "probability of touching of the skill's motions, and how many collided\n"
