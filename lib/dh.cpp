@@ -51,7 +51,12 @@ Pose frame_in_base(const Robot& robot, const std::string& name) {
     turned.rotation.diagonal() << -1.0, -1.0, 1.0;  // by pi about z, without the rounding of sin(pi)
     return turned;
   }
-  throw UsageError("robot.unknown_frame", fmt::format("robot {} has no frame \"{}\"", robot.name, name));
+  std::string known = "base, base_link";
+  for (const auto& [frame, pose] : robot.frames) {
+    if (frame != "base" && frame != "base_link") known += ", " + frame;
+  }
+  throw UsageError("robot.unknown_frame",
+                   fmt::format("robot {} has no frame \"{}\"; there are: {}", robot.name, name, known));
 }
 
 Pose dh_transform(const DhRow& row, double q) {

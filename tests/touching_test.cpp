@@ -163,6 +163,35 @@ TEST_CASE("without spread it is certain or impossible, and the same call says th
   CHECK(touching(arm(0.01), still(9), spread, {}, {.seed = 2}).path.probability != a.path.probability);
 }
 
+TEST_CASE("right at a box's face, up to about three times too much at its edge and corner") {
+  // A ball of 1 cm whose surface is 1 cm from the box, and an error of 1 cm along each axis.
+  Robot robot = nominal_ur10();
+  robot.links = {{"ball", 6, {0, 0, 0}, {0, 0, 0}, 0.01}};
+  constexpr double size = 0.4, away = 0.02;
+  const HandSpread spread = hand_spread({Matrix::Identity(3, 3) * 1e-4}, Matrix3::Identity());
+  std::vector<double> excess;
+  for (const Vector3& side : {Vector3(1, 0, 0), Vector3(1, 1, 0), Vector3(1, 1, 1)}) {
+    Solid box;
+    box.shape = SolidShape::box;
+    box.size = Vector3::Constant(size);
+    box.pose.position = hand() - 0.5 * size * side - away * side.normalized();
+    const Chance told = touching(ArmClearance(robot, {box}), still(1), spread).path;
+    Random random(5);
+    constexpr int draws = 100'000;
+    int touched = 0;
+    for (int i = 0; i < draws; ++i) {
+      Vector3 at = hand() - box.pose.position;
+      for (double& x : at) x += 0.01 * random.normal();
+      if ((at.cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm() <= 0.01) ++touched;
+    }
+    excess.push_back(told.probability * draws / touched);
+  }
+  CHECK(excess[0] == Approx(1).epsilon(0.03));
+  CHECK(excess[1] > 1.2);
+  CHECK(excess[2] > excess[1]);
+  CHECK(excess[2] < 3.2);
+}
+
 TEST_CASE("10000 sampled hand paths, by inverse kinematics and full distances, touch as often") {
   CapturedMessages captured;
   const Robot robot = load_robot(find_data_file("ur10", "robots"), captured.messages, true);

@@ -1,8 +1,6 @@
 // How far a skill is from targets that it has not seen, beside opponents: leave-one-target-out, or test targets.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "lfdtools/cli/program.hpp"
 #include "lfdtools/cli/suggestion_request.hpp"
 #include "lfdtools/cli/validation_report.hpp"
@@ -19,14 +17,6 @@ std::vector<int> folds_of(const std::string& file, const std::vector<TargetDemon
   std::vector<Labels> labels;
   for (const auto& target : targets) labels.push_back(target.labels);
   return read_folds(file, labels, messages);
-}
-
-/// @throws UsageError [usage.same_file]
-void check_names(std::vector<std::string> written) {
-  std::sort(written.begin(), written.end());
-  const auto first = std::find_if(written.begin(), written.end(), [](const auto& name) { return !name.empty(); });
-  const auto twice = std::adjacent_find(first, written.end());
-  if (twice != written.end()) throw UsageError("usage.same_file", *twice + " is to be written twice");
 }
 
 }  // namespace
@@ -59,8 +49,9 @@ int main(int argc, char** argv) {
                             "cut idle ends first, as demo-align does");
   program.integer("-n,--basis", bases, {2, 10'000}, "basis functions");
   program.integer_range("-k,--components", components, {1, 10'000}, "components of the references, chosen by BIC");
-  program.optional_path("--table", table, "a readable table of rmse in mm, to this file, or instead of the CSV");
-  program.path("--reliability", reliability, "write here how often bands of eleven levels hold");
+  program.optional_written_path("--table", table,
+                                "a readable table of rmse in mm, to this file, or instead of the CSV");
+  program.written_path("--reliability", reliability, "write here how often bands of eleven levels hold");
   std::vector<std::pair<std::string, std::string>> known;
   for (const auto& method : methods()) known.emplace_back(method.name, method.meaning);
   program.topic("Methods", known);
@@ -86,7 +77,6 @@ int main(int argc, char** argv) {
   program.example("skill-validate demos.csv --test truth.csv --noise-free --table", "against what the teacher meant");
   program.example("skill-validate demos.csv --suggest -0.2,0.3,0.8,0.8,0.1,0.5", "what to demonstrate next");
   return program.run(argc, argv, [&](cli::Run& run) {
-    check_names({run.options().output, table.value_or(""), reliability, run.options().summary});
     const DemonstrationSource source(CsvTable(run.open(), run.messages(), {.renumber = run.options().renumber}),
                                      run.messages(), {.columns = run.options().columns});
     const auto targets = read_targets(source);

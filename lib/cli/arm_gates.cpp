@@ -22,6 +22,15 @@ void declare_arm_gates(Program& program, ArmLimits& limits) {
       .gate("condition", "the Jacobian's condition number over --max-condition");
 }
 
+namespace {
+
+/// Three digits; what is only rounding away from infinite is told as such.
+std::string condition_words(double condition) {
+  return condition > 1e12 ? "infinite (singular)" : fmt::format("{:.3g}", condition);
+}
+
+}  // namespace
+
 bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
            const ArmLimits& limits, Run& run) {
   const Labels& labels = recording.demonstration.labels;
@@ -81,10 +90,11 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
   const Worst condition = worst(path.condition);
   if (condition.value > limits.condition) {
     refuse("condition", given(condition.sample),
-           fmt::format("the condition number is {:.1f}, over {:g}: a singularity is near", condition.value,
+           fmt::format("the condition number is {}, over {:g}: a singularity is near", condition_words(condition.value),
                        limits.condition));
   } else if (condition.value > limits.condition_warning) {
-    run.messages().warning("ik.condition", fmt::format("{}the condition number comes to {:.1f}", name, condition.value),
+    run.messages().warning("ik.condition",
+                           fmt::format("{}the largest condition number is {}", name, condition_words(condition.value)),
                            recording.place(given(condition.sample)));
   }
   run.figure("largest_step", worst(figures.step).value);

@@ -20,9 +20,16 @@ namespace {
 constexpr double tolerance = 1e-4;
 // A covariance whose mean is further from the joints' hand than this belongs to another tool, frame or motion [m].
 constexpr double same_path = 1e-3;
+// Where the way between samples comes this much closer than they do, their probability misses it [m].
+constexpr double much_closer = 1e-3;
 
 const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> position_names = {"x", "y", "z"};
+
+std::string prefix_of(const Labels& labels) {
+  const std::string words = describe(labels);
+  return words.empty() ? words : words + ": ";
+}
 
 /// The tool tip at every sample, in the base.
 Samples tips(const Robot& robot, const Samples& joints, const Pose& tool) {
@@ -114,7 +121,8 @@ class Spreads {
     if (off > same_path) {
       run_.messages().warning(
           "clearance.mean_differs",
-          fmt::format("the hand is {:.1f} mm from the covariance's motion: another --tool or --frame?", 1e3 * off),
+          fmt::format("{}the hand is {:.1f} mm from the covariance's motion: another --tool or --frame?",
+                      prefix_of(recording.demonstration.labels), 1e3 * off),
           recording.place(sample));
     }
     return *found;
@@ -132,19 +140,42 @@ std::string millimetres(double distance) {
                       : fmt::format("{:.1f} mm from", 1e3 * distance);
 }
 
+/// Where a path comes closest, in words.
+std::string approach(const ArmClearance& arm, const ClosestApproach& closest, const Recording& recording) {
+  return fmt::format("{}link {} is {} {}{}", prefix_of(recording.demonstration.labels),
+                     arm.bodies()[static_cast<std::size_t>(closest.pair.link)].name, millimetres(closest.distance),
+                     arm.obstacle_name(closest.pair.obstacle),
+                     closest.share > 0 ? " on the way to the next sample" : "");
+}
+
 /// Refuses a path that comes too close. @param margin  [m]
 void judge(std::string_view gate, double margin, const ArmClearance& arm, const ClosestApproach& closest,
            const Recording& recording, Run& run) {
   if (!std::isfinite(closest.distance)) return;
-  const std::string labels = describe(recording.demonstration.labels);
-  const std::string text =
-      fmt::format("{}{}link {} is {} {}{}", labels, labels.empty() ? "" : ": ",
-                  arm.bodies()[static_cast<std::size_t>(closest.pair.link)].name, millimetres(closest.distance),
-                  arm.obstacle_name(closest.pair.obstacle), closest.share > 0 ? " on the way to the next sample" : "");
+  const std::string text = approach(arm, closest, recording);
   if (closest.distance < margin) {
     run.refuse(gate, fmt::format("{}, under {:g} mm", text, 1e3 * margin), recording.place(closest.sample));
   }
   run.detail(fmt::format("clearance.{}", gate == "clearance" ? "closest" : "closest_self"), text);
+}
+
+/// Says where the way between samples, of which the probability knows nothing, comes closer than they do.
+/// @param least  of the pairs that `closest` speaks of, at given joints
+void warn_of_way(const ArmClearance& arm, double (ArmClearance::*least)(const Joints&) const,
+                 const ClosestApproach& closest, const Recording& recording, Run& run) {
+  if (!(closest.share > 0)) return;
+  const Samples& joints = recording.demonstration.trajectory.positions;
+  double at_samples = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < joints.rows(); ++k) {
+    at_samples = std::min(at_samples, (arm.*least)(joints.row(k).transpose()));
+  }
+  if (closest.distance > at_samples - much_closer) return;
+  run.messages().warning(
+      "clearance.probability_sparse",
+      fmt::format("{}, at no sample under {:.1f} mm, and the probability is of the samples alone: a smaller --dt of "
+                  "skill-generate puts more of them there",
+                  approach(arm, closest, recording), 1e3 * at_samples),
+      recording.place(closest.sample));
 }
 
 /// A row a link: its closest solid, or, where the arm itself counts, its closest neighbour in either.
@@ -198,24 +229,38 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
     if (request.max_probability && !request.asks_probability()) {
       throw UsageError("usage.missing", "--max-probability needs --covariance or --goal-sd");
     }
+    if (program.given("--frame") && !request.asks_probability()) {
+      throw UsageError("usage.missing", "--frame, that of covariance and goal, needs --covariance or --goal-sd");
+    }
     if (request.goal_sd &&
         std::any_of(request.goal_sd->begin(), request.goal_sd->end(), [](double sd) { return sd < 0; })) {
       throw UsageError("usage.value", "--goal-sd: a standard deviation is not negative");
     }
     (void)tool_pose(request.pose);
   });
-  program.example("arm-clearance --scene table joints.csv -o clearance.csv", "every link's distance from the table");
-  program.example("ur10-ik --rpy -1.5708,0,0 motions.csv | arm-clearance --scene cell.json --self --margin 0.02",
-                  "refused if anything comes closer than 2 cm");
-  program.example("arm-clearance --scene cell.json --covariance spread.json --max-probability 0.001 joints.csv",
-                  "with the chance that the arm touches");
+  const std::string elbow_up = "ur10-ik --rpy -1.5708,0,0 --seed-joints 0,-1.5,1.5,0,1.5,0 motions.csv";
+  program.example(elbow_up + " | arm-clearance --scene table", "every link's distance from the table");
+  program.example(elbow_up + " | arm-clearance --scene table --self --margin 0.01",
+                  "refused if anything comes closer than 1 cm to the table, or the arm into itself");
+  program.example(elbow_up + " | arm-clearance --scene table --goal-sd 0.005 --max-probability 0.001",
+                  "refused if it may touch, where goals are known to 5 mm");
 }
 
 void report_clearance(const ClearanceRequest& request, Run& run) {
   Robot robot = load_robot_with_links(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
   Scene scene;
   if (!request.scene.empty()) {
-    scene = load_scene(find_data_file(request.scene, "scenes"), run.messages(), run.options().strict);
+    const std::string file = find_data_file(request.scene, "scenes");
+    scene = load_scene(file, run.messages(), run.options().strict);
+    if (scene.obstacles.empty() && !request.self) {
+      throw UsageError("usage.missing", fmt::format("there is nothing to keep clear of: {} has no obstacles, and "
+                                                    "--self is not given",
+                                                    file));
+    }
+    if (scene.obstacles.empty()) {
+      run.messages().warning("scene.empty", "the scene has no obstacles: only the arm itself counts",
+                             {file, 0, 0, "/obstacles"});
+    }
   }
   const Pose tool = tool_pose(request.pose);
   std::optional<Capsule> held;
@@ -234,20 +279,22 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
     const Trajectory& path = recording.demonstration.trajectory;
     const ClosestApproach closest = closest_approach(arm, path.positions, tolerance);
     judge("clearance", request.margin, arm, closest, recording, run);
+    if (request.asks_probability()) warn_of_way(arm, &ArmClearance::least, closest, recording, run);
     least = std::min(least, closest.distance);
     if (request.self) {
       const ClosestApproach own = closest_approach_of_arm_itself(arm, path.positions, tolerance);
       judge("self_clearance", 0.0, arm, own, recording, run);
+      if (request.asks_probability()) warn_of_way(arm, &ArmClearance::least_of_arm_itself, own, recording, run);
       least_of_itself = std::min(least_of_itself, own.distance);
     }
     Touching chances;
     if (request.asks_probability()) {
       const HandSpread spread = spreads.of(recording, tips(arm.robot(), path.positions, tool));
       chances = touching(arm, path.positions, spread, tool, {.self = request.self, .seed = run.seed()});
-      const std::string text = fmt::format(
-          "{}the path touches with probability {:.3g}, computed to {:.1g}",
-          describe(recording.demonstration.labels).empty() ? "" : describe(recording.demonstration.labels) + ": ",
-          chances.path.probability, chances.path.error);
+      const std::string text =
+          fmt::format("{}the path touches with probability {:.3g}{}", prefix_of(recording.demonstration.labels),
+                      chances.path.probability,
+                      chances.path.error > 0 ? fmt::format(" (standard error {:.1g})", chances.path.error) : "");
       if (request.max_probability && chances.path.probability > *request.max_probability) {
         run.refuse("probability", fmt::format("{}, over {:g}", text, *request.max_probability), recording.place(0));
       }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "lfdtools/cli/joint_path_request.hpp"
 
 namespace lfd::cli {
@@ -21,18 +23,28 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
   program.flag("--diagnostics", request.diagnostics, "add columns branch, residual, condition");
   program.flag("--singularities", request.singularities, "add columns manipulability, shoulder, elbow, wrist");
   declare_arm_gates(program, request.limits);
-  program.check([&] {
+  program.check([&program, &request, &pose] {
     if (pose.orientation && pose.rpy) throw UsageError("usage.exclusive", "--orientation and --rpy exclude each other");
     if (request.posture == "-") throw UsageError("usage.posture", "--posture takes a file, not standard input");
     if (request.all && (request.retime || !request.posture.empty())) {
       throw UsageError("usage.exclusive", "--all writes solutions, not a path that --retime or --posture could shape");
     }
+    if (request.all) {
+      for (const char* other : {"--diagnostics", "--singularities", "--speeds", "--accelerations", "--given-rows"}) {
+        if (program.given(other)) {
+          throw UsageError("usage.exclusive",
+                           fmt::format("--all writes solutions, not a path, so it excludes {}", other));
+        }
+      }
+    }
     (void)fixed_orientation(pose);
     (void)tool_pose(pose);
   });
-  program.example("skill-generate skill.json --goals holes.csv | ur10-ik --rpy 3.1416,0,0", "a tool that points down");
-  program.example("ur10-ik --robot ur10e --tool 0,0,0.15 --diagnostics motions.csv", "with a peg of 15 cm");
-  program.example("ur10-ik --posture recorded.csv --retime motions.csv", "the demonstrators' posture, at full speed");
+  program.example("skill-generate skill.json --goals goals.csv | ur10-ik --rpy 3.1416,0,0", "a tool that points down");
+  program.example("ur10-ik --rpy -1.5708,0,0 --robot ur10e --tool 0,0,0.15 --diagnostics motions.csv",
+                  "with a peg of 15 cm");
+  program.example("ur10-ik --rpy -1.5708,0,0 --posture joints.csv motions.csv",
+                  "in the posture that these joints keep");
 }
 
 }  // namespace lfd::cli

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "lfdtools/interpolation.hpp"
@@ -65,7 +67,8 @@ int posture_of(const std::string& file, const InverseKinematics& arm, Run& run) 
 class Answer {
  public:
   Answer(const JointPathRequest& request, Run& run)
-      : request_(request), run_(run), tool_(tool_pose(request.pose)), arm_(robot_of(request, run)) {
+      : request_(request), run_(run), tool_(tool_pose(request.pose)), arm_(arm_of(request, run)) {
+    warn_of_degrees();
     (void)frame_in_base(arm_.robot(), request.pose.frame);
     if (request.seed) options_.seed = Eigen::Map<const Joints>(request.seed->data());
     if (!request.posture.empty()) options_.branch = posture_of(request.posture, arm_, run);
@@ -77,7 +80,12 @@ class Answer {
     const bool fixed = request_.pose.orientation || request_.pose.rpy;
     quaternions_ = !fixed && table.has("qw") && table.has("qx") && table.has("qy") && table.has("qz");
     if (!fixed && !quaternions_) {
-      throw UsageError("ik.no_orientation", "the path has no columns qw,qx,qy,qz: give --orientation or --rpy");
+      std::string missing;
+      for (const char* name : {"qw", "qx", "qy", "qz"}) {
+        if (!table.has(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
+      }
+      throw UsageError("ik.no_orientation",
+                       fmt::format("the path has no column {}: give --orientation or --rpy", missing));
     }
     for (const auto& name : table.columns()) {
       if (name.starts_with("sd_") || name.starts_with("cov_")) passed_.push_back(name);
@@ -96,13 +104,28 @@ class Answer {
   }
 
  private:
-  static Robot robot_of(const JointPathRequest& request, Run& run) {
-    Robot robot = load_robot(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
+  static InverseKinematics arm_of(const JointPathRequest& request, Run& run) {
+    const std::string file = find_data_file(request.robot, "robots");
+    Robot robot = load_robot(file, run.messages(), run.options().strict);
     if (request.acceleration) robot.limits.acceleration = Joints::Constant(*request.acceleration);
     if (request.retime && !robot.limits.acceleration) {
       robot.limits.acceleration = Joints::Constant(usual_acceleration);
     }
-    return robot;
+    try {
+      return InverseKinematics(std::move(robot));
+    } catch (const ConfigError& error) {
+      throw ConfigError(error.id(), error.what(), {file, 0, 0, error.place().pointer});
+    }
+  }
+
+  void warn_of_degrees() {
+    if (!request_.pose.rpy) return;
+    for (const double angle : *request_.pose.rpy) {
+      if (std::abs(angle) <= 2 * std::numbers::pi) continue;
+      run_.messages().warning("joints.degrees",
+                              fmt::format("--rpy has {:g}, over a turn: is it in degrees? radians are needed", angle));
+      return;
+    }
   }
 
   [[nodiscard]] std::vector<std::string> columns() const {

@@ -70,19 +70,19 @@ void declare_motion_request(Program& program, MotionRequest& request) {
                                           "add columns band_: half-widths of a 95 % band about the intention");
   program.integer("--samples", request.samples, {0, 1'000'000},
                   "write this many draws a goal instead of the mean, of what --sd says (0: none)");
-  program.path("--covariance", request.covariance, "write the covariance of each motion to this file");
+  program.written_path("--covariance", request.covariance, "write the covariance of each motion to this file");
   program.number("--max-sd", request.max_sd, positive, "gate sd: largest predictive sd allowed [m]");
   program.gate("region", "goal outside the demonstrated region");
   program.gate("start", "no start is given though the demonstrations start over 20 mm apart");
   program.gate("sd", "predictive sd over --max-sd");
   program.check([&] { check_request(request); });
-  program.example("skill-generate skill.json --goal 0.45,0.1,0.2", "one motion, to standard output");
-  program.example("mvgpr-train dmp.json | skill-generate --goals holes.csv --dt 0.01 -o motions.csv",
-                  "several, at 100 Hz");
-  program.example("skill-generate skill.json --goal 0.45,0.1,0.2 --via 0.8,0.2,0,0.35 --sd",
+  program.example("skill-generate skill.json --goal 0.1,0.8,0.3", "one motion, to standard output");
+  program.example("skill-generate skill.json --goals goals.csv --dt 0.01 -o motions.csv", "several, at 100 Hz");
+  program.example("skill-generate skill.json --goal 0.1,0.8,0.3 --via 1.2,-0.13,0.49,0.61 --sd",
                   "the nearest motion that passes a point, and how sure it is");
-  program.example("skill-generate skill.json --goal 0.45,0.1,0.2 --samples 20 --seed 7", "twenty motions it might be");
-  program.example("skill-generate dmp.json --target 3", "what the primitive of target 3 does by itself");
+  program.example("skill-generate skill.json --goal 0.1,0.8,0.3 --samples 20 --seed 7", "twenty motions it might be");
+  program.example("demo-align demos.csv | gmm-fit -k 4 | gmr-regress | dmp-fit | skill-generate --target 3",
+                  "what the primitive of target 3 does by itself");
 }
 
 }  // namespace lfd::cli

@@ -13,7 +13,13 @@ void replay(std::vector<DmpFile> files, const MotionRequest& request, Run& run) 
   if (files.empty())
     throw UsageError("generate.no_target", fmt::format("no primitive is of target '{}'", request.target));
   if (files.size() > 1) {
-    throw UsageError("generate.which", fmt::format("{} primitives: --target says which one to replay", files.size()));
+    throw UsageError(
+        "generate.which",
+        request.target.empty()
+            ? fmt::format("{} primitives: --target says which one to replay", files.size())
+            : fmt::format("{} primitives are of target '{}', and one is replayed: dmp-fit makes one a target of the "
+                          "references of gmr-regress",
+                          files.size(), request.target));
   }
   if (request.weights)
     throw UsageError("generate.weights", "--weights needs a skill; a primitive's weights are in its file");

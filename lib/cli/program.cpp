@@ -267,6 +267,9 @@ int Program::run(int argc, char** argv, const std::function<void(Run&)>& body) {
     for (const auto& recorder : impl_->recorders) recorder(entry.arguments);
     if (impl_->uses_seed) entry.seed = static_cast<std::uint64_t>(common.seed);
     check_summary(common.summary);
+    for (const auto& name : impl_->written) {
+      if (!name().empty()) common.beside.push_back(name());
+    }
     Run run(common, messages, std::move(entry));
     body(run);
     run.finish();

@@ -23,6 +23,7 @@ struct Program::Implementation {
   std::string topics;
   std::string examples;
   std::vector<std::function<void()>> checks;
+  std::vector<std::function<std::string()>> written;                      // files beside the output, empty: none
   std::vector<std::string> optional_values;                               // options whose number may be left out
   std::map<std::string, std::vector<std::string>> optional_words;         // the same, and the words they take
   std::vector<std::function<void(std::vector<std::string>&)>> recorders;  // append canonical arguments

@@ -188,9 +188,16 @@ Program& Program::path(const std::string& names, std::string& value, const std::
   return *this;
 }
 
-Program& Program::optional_path(const std::string& names, std::optional<std::string>& value, const std::string& doc) {
+Program& Program::written_path(const std::string& names, std::string& value, const std::string& doc) {
+  impl_->written.push_back([&value] { return value; });
+  return path(names, value, doc);
+}
+
+Program& Program::optional_written_path(const std::string& names, std::optional<std::string>& value,
+                                        const std::string& doc) {
   auto text = std::make_shared<std::string>();
   auto* option = impl_->app.add_flag(names, *text, doc);
+  impl_->written.push_back([&value] { return value.value_or(""); });
   option->multi_option_policy(CLI::MultiOptionPolicy::Throw)->type_name("[=FILE]");
   impl_->checks.push_back([text, option, &value] {
     if (option->count() > 0) value = *text == "true" ? "" : *text;  // what CLI11 calls a flag without a value

@@ -1,8 +1,11 @@
 #include "lfdtools/cli/run.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "lfdtools/io/number.hpp"
@@ -23,10 +26,42 @@ std::string quoted(const std::string& cell) {
   return text + "\"";
 }
 
+/// The same for all names of one file, whether it exists or not; empty for a device, which may be written twice.
+std::string identity(const std::string& name) {
+  namespace fs = std::filesystem;
+  const bool standard = name.empty() || name == "-";
+  struct stat status {};
+  if ((standard ? ::fstat(STDOUT_FILENO, &status) : ::stat(name.c_str(), &status)) == 0) {
+    return S_ISCHR(status.st_mode) ? "" : fmt::format("{}:{}", status.st_dev, status.st_ino);
+  }
+  if (standard) return {};
+  std::error_code ignored;
+  fs::path path = name;
+  for (int links = 0; links < 40 && fs::is_symlink(path, ignored); ++links) {
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  }
+  return (fs::weakly_canonical(fs::absolute(path, ignored).parent_path(), ignored) / path.filename()).string();
+}
+
+void check_written(const CommonOptions& options) {
+  std::vector<std::string> names = options.beside;
+  if (!options.summary.empty()) names.push_back(options.summary);
+  std::vector<std::string> taken = {identity(options.output)};
+  for (const auto& name : names) {
+    const std::string same = identity(name);
+    if (!same.empty() && std::find(taken.begin(), taken.end(), same) != taken.end()) {
+      throw UsageError("usage.same_file", fmt::format("{} is to be written twice", name));
+    }
+    taken.push_back(same);
+  }
+}
+
 }  // namespace
 
 Run::Run(CommonOptions options, Messages& messages, Provenance provenance)
-    : options_(std::move(options)), messages_(messages), provenance_(std::move(provenance)) {}
+    : options_(std::move(options)), messages_(messages), provenance_(std::move(provenance)) {
+  check_written(options_);
+}
 
 JsonOptions Run::json_options() const {
   JsonOptions json;

@@ -13,7 +13,9 @@ namespace lfd {
 std::string find_data_file(const std::string& name, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  if (name.find('/') != std::string::npos || fs::is_regular_file(name, ignored)) return name;
+  const bool named_as_file = name.find('/') != std::string::npos || name.ends_with(".json") ||
+                             name.ends_with(".yaml") || name.ends_with(".yml") || name.ends_with(".urdf");
+  if (named_as_file || fs::is_regular_file(name, ignored)) return name;
   std::vector<fs::path> roots;
   if (const char* share = std::getenv("LFDTOOLS_SHARE")) roots.emplace_back(share);
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);

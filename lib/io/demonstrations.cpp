@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "lfdtools/io/number.hpp"
@@ -10,11 +11,13 @@
 namespace lfd {
 namespace {
 
-constexpr double long_gap = 10;     // median periods
-constexpr double slow_period = 1;   // [s]: no hand is recorded more slowly
-constexpr double far_start = 0.02;  // [m]
-constexpr double far_away = 20;     // [m]: no hand reaches so far
+constexpr double long_gap = 10;                      // median periods
+constexpr double slow_period = 1;                    // [s]: no hand is recorded more slowly
+constexpr double far_start = 0.02;                   // [m]
+constexpr double far_away = 20;                      // [m]: no hand reaches so far
+constexpr double far_turned = 6 * std::numbers::pi;  // [rad]: no joint turns so far
 const std::vector<std::string> position_columns{"x", "y", "z"};
+const std::vector<std::string> joint_columns{"q1", "q2", "q3", "q4", "q5", "q6"};
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -77,12 +80,20 @@ void warn_of_sampling(const Recording& recording, Messages& messages) {
   }
 }
 
-/// Positions that no hand reaches in metres. @return whether there were any
+/// Positions that no hand reaches in metres, joints that do not turn so far in radians. @return whether there were any
 bool warn_of_unit(const Recording& recording, const std::vector<std::string>& columns, Messages& messages) {
-  if (columns != position_columns) return false;
+  const bool joints = columns == joint_columns;
+  if (columns != position_columns && !joints) return false;
   Eigen::Index row = 0, column = 0;
   const double largest = recording.demonstration.trajectory.positions.cwiseAbs().maxCoeff(&row, &column);
-  if (largest <= far_away) return false;
+  if (largest <= (joints ? far_turned : far_away)) return false;
+  if (joints) {
+    messages.warning("joints.degrees",
+                     columns[static_cast<std::size_t>(column)] + " reaches " + number_text(rounded(largest)) +
+                         ", over three turns: are the joints in degrees? radians are needed",
+                     recording.place(row));
+    return true;
+  }
   messages.warning("demo.unit",
                    columns[static_cast<std::size_t>(column)] + " reaches " + number_text(rounded(largest)) +
                        ": are the positions in millimetres? metres are needed",

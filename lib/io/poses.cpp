@@ -3,8 +3,12 @@
 namespace lfd {
 namespace {
 
-Quaternion quaternion(const double* w) {
-  return Eigen::Map<const Quaternion>(w);
+Matrix3 rotation_of(const char* option, const double* w) {
+  try {
+    return rotation_from_quaternion(Eigen::Map<const Quaternion>(w));
+  } catch (const DataError& error) {
+    throw DataError(error.id(), std::string(option) + ": " + error.what());
+  }
 }
 
 }  // namespace
@@ -13,12 +17,12 @@ Pose tool_pose(const PoseOptions& options) {
   Pose tool;
   if (!options.tool) return tool;
   tool.position = Eigen::Map<const Vector3>(options.tool->data());
-  if (options.tool->size() == 7) tool.rotation = rotation_from_quaternion(quaternion(options.tool->data() + 3));
+  if (options.tool->size() == 7) tool.rotation = rotation_of("--tool", options.tool->data() + 3);
   return tool;
 }
 
 std::optional<Matrix3> fixed_orientation(const PoseOptions& options) {
-  if (options.orientation) return rotation_from_quaternion(quaternion(options.orientation->data()));
+  if (options.orientation) return rotation_of("--orientation", options.orientation->data());
   if (options.rpy) return rotation_from_rpy(Eigen::Map<const Vector3>(options.rpy->data()));
   return {};
 }

@@ -15,7 +15,7 @@ SolidShape shape_of(const JsonView& view) {
   if (type == "cylinder") return SolidShape::cylinder;
   if (type == "capsule") return SolidShape::capsule;
   if (type == "plane") return SolidShape::plane;
-  view.fail("scene.type", "the type is box, sphere, cylinder, capsule or plane");
+  view.fail("scene.type", "the type is box, sphere, cylinder, capsule or plane, not '" + type + "'");
 }
 
 Solid read_solid(const JsonView& view) {
@@ -64,7 +64,7 @@ Scene read_scene(const JsonDocument& document) {
   if (const auto frame = root.find("frame")) {
     scene.frame = frame->string();
     if (scene.frame != "base" && scene.frame != "base_link") {
-      frame->fail("scene.frame", "the frame is base or base_link");
+      frame->fail("scene.frame", "the frame is base or base_link, not '" + scene.frame + "'");
     }
   }
   const JsonView list = root.at("obstacles");

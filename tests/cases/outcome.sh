@@ -35,3 +35,19 @@ with_last() {
 
 # Standard input without the digests of inputs, which tell files apart that mean the same.
 undigested() { sed 's/"input_sha256":"[0-9a-f]*"/"input_sha256":""/g'; }
+
+# The examples of --help, run one after another on the files of README.md's first example: outcome of each.
+examples() {
+  experiment=$(dirname "$CASES")/../share/lfdtools/peg-in-hole/A.json
+  demo-synth "$experiment" -o demos.csv && demo-synth "$experiment" --write new-holes -o goals.csv &&
+    dmp-fit demos.csv | mvgpr-train -o skill.json &&
+    skill-generate skill.json --goals goals.csv -o motions.csv &&
+    ur10-ik -q --rpy -1.5708,0,0 motions.csv -o joints.csv || return
+  $PROGRAM --help | sed -n '/^Examples:/,$s/^  \([^ ].*\)/\1/p' >examples
+  while read -r example; do
+    sh -c "$example" >example.out 2>example.err </dev/null
+    echo "$?: $example"
+    grep -v -e ' warning: ' -e ' note: ' example.err
+  done <examples
+  :
+}

@@ -78,8 +78,10 @@ class Program {
   Program& words(const std::string& names, std::vector<std::string>& value, const std::string& doc);
   /// A file name: not part of the provenance.
   Program& path(const std::string& names, std::string& value, const std::string& doc);
+  /// The same of a file that is written.
+  Program& written_path(const std::string& names, std::string& value, const std::string& doc);
   /// The same, whose file name may be left out after the option (`--table` or `--table=FILE`): then it is empty.
-  Program& optional_path(const std::string& names, std::optional<std::string>& value, const std::string& doc);
+  Program& optional_written_path(const std::string& names, std::optional<std::string>& value, const std::string& doc);
   /// One of named values.
   template <typename Value>
   Program& choice(const std::string& names, Value& value, const std::vector<std::pair<std::string, Value>>& choices,

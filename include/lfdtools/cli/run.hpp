@@ -30,6 +30,7 @@ struct CommonOptions {
   std::int64_t seed = 1;
   std::vector<std::string> columns;  ///< signals; empty: by rule
   std::string summary;               ///< file that gets one row about this run
+  std::vector<std::string> beside;   ///< further files that options name for output
   std::set<std::string> lifted;      ///< gates
   bool all_lifted = false;
 };
@@ -37,6 +38,7 @@ struct CommonOptions {
 /// One run of a program, from parsed options to the finished output.
 class Run {
  public:
+  /// @throws UsageError [usage.same_file] if two of output, summary and the files beside are one
   Run(CommonOptions options, Messages& messages, Provenance provenance);
 
   [[nodiscard]] const CommonOptions& options() const { return options_; }
