@@ -164,7 +164,10 @@ namespace {
 
 class Search {
  public:
-  Search(const ArmClearance& arm, double tolerance, bool self) : arm_(arm), tolerance_(tolerance), self_(self) {}
+  static constexpr int most_halvings = 40;
+
+  Search(const ArmClearance& arm, Eigen::Index samples, double tolerance, bool self)
+      : arm_(arm), tolerance_(tolerance), self_(self), halvings_(1'000'000 + 1000 * samples) {}
 
   double look_at(const Joints& q, Eigen::Index sample, double share) {
     const double d = self_ ? arm_.least_of_arm_itself(q) : arm_.least(q);
@@ -177,15 +180,21 @@ class Search {
     return d;
   }
 
-  void look_between(const Joints& from, const Joints& to, Eigen::Index sample, double low, double high) {
-    const Joints q = 0.5 * (from + to);
+  void look_between(const Joints& from, const Joints& to, Eigen::Index sample, double low, double high,
+                    int halvings = 0) {
+    const Joints q = 0.5 * from + 0.5 * to;
     const double share = 0.5 * (low + high);
     const double d = look_at(q, sample, share);
     // Two links that both move approach each other by twice as much.
-    const double moved = (self_ ? 2.0 : 1.0) * arm_.furthest_motion(q, 0.5 * (to - from).cwiseAbs());
+    const double moved = (self_ ? 2.0 : 1.0) * arm_.furthest_motion(q, (0.5 * to - 0.5 * from).cwiseAbs());
     if (d - moved >= best_.distance - tolerance_) return;
-    look_between(from, q, sample, low, share);
-    look_between(q, to, sample, share, high);
+    if (halvings == most_halvings || halvings_ == 0) {
+      best_.complete = false;
+      return;
+    }
+    --halvings_;
+    look_between(from, q, sample, low, share, halvings + 1);
+    look_between(q, to, sample, share, high, halvings + 1);
   }
 
   [[nodiscard]] bool nothing() const { return best_.distance == nothing_near; }
@@ -202,6 +211,7 @@ class Search {
   const ArmClearance& arm_;
   double tolerance_;
   bool self_;
+  Eigen::Index halvings_;  // left
   ClosestApproach best_{nothing_near, 0, 0.0, {}};
   Joints at_ = Joints::Zero();
 };
@@ -211,7 +221,7 @@ ClosestApproach search(const ArmClearance& arm, const Samples& joints, double to
     throw DataError("clearance.shape", "the joint path needs a sample, six columns and a tolerance over 0");
   }
   if (!joints.allFinite()) throw DataError("clearance.not_finite", "the joint path has a value that is not finite");
-  Search search(arm, tolerance, self);
+  Search search(arm, joints.rows(), tolerance, self);
   for (Eigen::Index k = 0; k < joints.rows(); ++k) (void)search.look_at(joints.row(k).transpose(), k, 0.0);
   if (search.nothing()) return search.result();
   for (Eigen::Index k = 0; k + 1 < joints.rows(); ++k) {

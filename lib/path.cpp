@@ -125,15 +125,23 @@ double deviation_midway(const Robot& robot, const Joints& q0, const Joints& q1, 
   return distance(forward_kinematics(robot, 0.5 * (q0 + q1)), interpolate(from, to, 0.5)).largest();
 }
 
-/// Sets status, sample and reason, for people and in the numbers of the samples given.
-void fail(PathStatus status, Eigen::Index row, const std::string& reason, const PathSampling& sampling,
-          JointPath& path) {
-  path.status = status;
-  path.sample = sampling.given(row);
-  path.reason = reason;
+/// Adds a fault; the first is what the path is told by.
+void fail(JointPath& path, const PathFault& fault) {
+  if (path.faults.empty()) {
+    path.status = fault.status;
+    path.sample = fault.sample;
+    path.reason = fault.reason;
+  }
+  path.faults.push_back(fault);
 }
 
-/// Sets status, sample and reason of a path whose joints are known.
+/// The same for a row, in the numbers of the samples given.
+void fail(PathStatus status, Eigen::Index row, const std::string& reason, const PathSampling& sampling,
+          JointPath& path) {
+  fail(path, {status, sampling.given(row), reason});
+}
+
+/// Adds the first jump and the first deviation of a path whose joints are known.
 void judge(const InverseKinematics& arm, const PathOptions& options, const PathSampling& sampling, JointPath& path) {
   const auto why = [&](Eigen::Index row) {
     const std::string limit = sampling.limit(row, options.refinements);
@@ -152,7 +160,7 @@ void judge(const InverseKinematics& arm, const PathOptions& options, const PathS
          fmt::format("joint {} moves {:.3g} rad to {} on the best of all paths{}{}", joint + 1, step, sampling.name(t),
                      near.empty() ? near : ", near " + near, why(t)),
          sampling, path);
-    return;
+    break;
   }
   for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
     if (!(path.midpoint_deviation[t] > options.midpoint_tolerance)) continue;
@@ -160,7 +168,7 @@ void judge(const InverseKinematics& arm, const PathOptions& options, const PathS
          fmt::format("the hand is off its path by {:.3g} (m or rad) midway to {}{}", path.midpoint_deviation[t],
                      sampling.name(t), why(t)),
          sampling, path);
-    return;
+    break;
   }
 }
 
@@ -187,9 +195,8 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
     if (layers[t].empty()) path.unreachable.push_back(path.given[t]);
   }
   if (!path.unreachable.empty()) {
-    path.status = PathStatus::unreachable;
-    path.sample = path.unreachable.front();
-    path.reason = fmt::format("sample {} is out of reach", path.sample + 1);
+    const Eigen::Index sample = path.unreachable.front();
+    fail(path, {PathStatus::unreachable, sample, fmt::format("sample {} is out of reach", sample + 1)});
     return path;
   }
   for (std::size_t t = 0; options.branch && t < layers.size(); ++t) {
@@ -263,10 +270,12 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
   JointPath path = solve_halving(arm, flange, times, any);
   if (path.joints.rows() == 0) return path;
   if (path.status == PathStatus::jump && kept.status == PathStatus::jump) return kept;
-  path.status = PathStatus::other_branch;
-  path.sample = kept.sample;
-  path.reason = fmt::format("the posture {} cannot be kept: {}; there is a path in {}", branch_name(*options.branch),
-                            kept.reason, branch_name(path.branch.front()));
+  std::string reason = fmt::format("the posture {} cannot be kept: {}", branch_name(*options.branch), kept.reason);
+  const bool one = path.branch_changes == 0 && path.branch.front() != *options.branch;
+  if (one && path.faults.empty()) reason += fmt::format("; there is a path in {}", branch_name(path.branch.front()));
+  const std::vector<PathFault> own = std::exchange(path.faults, {});
+  fail(path, {PathStatus::other_branch, kept.sample, reason});
+  for (const PathFault& fault : own) fail(path, fault);
   return path;
 }
 

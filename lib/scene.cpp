@@ -2,12 +2,10 @@
 
 namespace lfd {
 
-std::vector<Solid> Scene::in_base() const {
+std::vector<Solid> Scene::in_base(const Robot& robot) const {
   std::vector<Solid> solids = obstacles;
-  if (frame != "base_link") return solids;
-  Pose turn;
-  turn.rotation.diagonal() << -1.0, -1.0, 1.0;
-  for (Solid& solid : solids) solid.pose = turn * solid.pose;
+  const Pose pose = frame_in_base(robot, frame);
+  for (Solid& solid : solids) solid.pose = pose * solid.pose;
   return solids;
 }
 

@@ -8,6 +8,7 @@
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
+#include "lfdtools/semidefinite.hpp"
 
 namespace lfd {
 namespace {
@@ -38,25 +39,13 @@ double normal_over(double c, Random& random) {
   }
 }
 
-/// Pivoted Cholesky factor, as many columns as the covariance has rank to 1e-10 of its largest variance.
-Matrix thin_factor(Matrix A) {
+Matrix thin_factor(const Matrix& A) {
   if (A.rows() != A.cols() || !A.allFinite()) {
     throw DataError("touching.shape", "a covariance is not square or not finite");
   }
-  const double largest = A.rows() > 0 ? A.diagonal().maxCoeff() : 0.0;
-  Matrix L(A.rows(), 0);
-  Vector left = A.diagonal();
-  while (L.cols() < A.rows()) {
-    if (left.minCoeff() < -1e-6 * largest) {
-      throw DataError("touching.not_positive", "a covariance is not positive semidefinite");
-    }
-    Eigen::Index pivot = 0;
-    const double variance = left.maxCoeff(&pivot);
-    if (!(variance > 1e-10 * largest)) break;
-    const Vector column = (A.col(pivot) - L * L.row(pivot).transpose()) / std::sqrt(variance);
-    L.conservativeResize(Eigen::NoChange, L.cols() + 1);
-    L.rightCols(1) = column;
-    left -= column.cwiseAbs2();
+  Matrix L;
+  if (!try_thin_cholesky(A, L)) {
+    throw DataError("touching.not_positive", "a covariance is not positive semidefinite");
   }
   return L;
 }

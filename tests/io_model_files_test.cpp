@@ -318,11 +318,18 @@ TEST_CASE("a robot file is loaded by path") {
   REQUIRE(refusal_of([&] { (void)load_robot(folder.file("none.json"), silent); }).fault == Fault::no_input);
 }
 
-TEST_CASE("a robot without a link that moves has no body") {
+TEST_CASE("a robot with a joint that carries no link has not all of its body") {
   const ScratchFolder folder;
-  const std::string text = robot_text();
-  REQUIRE(load_robot_with_links(folder.write("toy.json", text), silent).links.size() == 1);
-  const std::string still = folder.write("still.json", changed(text, "\"frame\":3", "\"frame\":0"));
+  Robot robot = read_robot(document(robot_text(), Fault::config));
+  const Capsule link = robot.links[0];
+  robot.links.clear();
+  for (int frame = 1; frame <= 6; ++frame) {
+    robot.links.push_back(link);
+    robot.links.back().frame = frame;
+  }
+  REQUIRE(load_robot_with_links(folder.write("toy.json", text_of(robot, write_robot)), silent).links.size() == 6);
+  robot.links[2].frame = 4;
+  const std::string still = folder.write("still.json", text_of(robot, write_robot));
   const Refusal refusal = refusal_of([&] { (void)load_robot_with_links(still, silent); });
   REQUIRE(refusal.id == "robot.no_links");
   REQUIRE(refusal.fault == Fault::config);
@@ -355,6 +362,11 @@ TEST_CASE("a covariance is read as it was written, one matrix a signal or one of
   }
   file.covariance = {A, Matrix::Identity(2, 2)};
   require_refused(text_of(file, write_covariance), read_covariance, "json.wrong_length", "/covariance/1");
+  file.covariance = {A, A};
+  file.covariance[1](2, 0) += 1e-7;
+  require_refused(text_of(file, write_covariance), read_covariance, "covariance.not_symmetric", "/covariance/1/2/0");
+  file.covariance[1] = A - 10 * Matrix::Identity(3, 3);
+  require_refused(text_of(file, write_covariance), read_covariance, "covariance.not_positive", "/covariance/1");
 }
 
 TEST_CASE("an experiment states everything, and is read as it was written") {

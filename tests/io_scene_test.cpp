@@ -37,6 +37,11 @@ TEST_CASE("base_link is turned by pi about z") {
   CHECK(solids[0].pose.position.isApprox(Vector3(-1, -2, 3)));
   CHECK(solids[0].pose.rotation.isApprox(Matrix3::Identity()));
   CHECK(read(scene(box)).in_base()[0].pose.position.isApprox(Vector3(1, 2, 3)));
+  Robot raised;
+  raised.frames["base_link"] = {Matrix3::Identity(), {0, 0, 0.5}};
+  raised.frames["base"] = {Matrix3::Identity(), {0.1, 0, 0}};
+  CHECK(read(scene(box, "base_link")).in_base(raised)[0].pose.position.isApprox(Vector3(1, 2, 3.5)));
+  CHECK(read(scene(box)).in_base(raised)[0].pose.position.isApprox(Vector3(1.1, 2, 3)));
 }
 
 TEST_CASE("What a scene cannot mean is refused with its place") {

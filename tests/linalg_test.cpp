@@ -6,6 +6,7 @@
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/gaussian.hpp"
+#include "lfdtools/semidefinite.hpp"
 
 using namespace lfd;
 
@@ -25,6 +26,24 @@ TEST_CASE("a matrix with NaN or a negative eigenvalue has no Cholesky factor") {
   CHECK_THROWS_AS(cholesky(A), DataError);
   A << 1, 2, 2, 1;
   CHECK_THROWS_AS(cholesky(A), DataError);
+}
+
+TEST_CASE("a thin Cholesky factor is that of the rank, and what is not positive semidefinite has none") {
+  const Matrix F = (Matrix(4, 2) << 1, 2, -1, 0.5, 3, 1, 0, 2).finished();
+  const Matrix A = 1e-8 * F * F.transpose();
+  Matrix L;
+  REQUIRE(try_thin_cholesky(A, L));
+  CHECK(L.cols() == 2);
+  CHECK((L * L.transpose() - A).cwiseAbs().maxCoeff() < 1e-20);
+  CHECK(try_thin_cholesky(Matrix::Zero(3, 3), L));
+  CHECK(L.cols() == 0);
+  CHECK(try_thin_cholesky(Matrix::Identity(40, 40), L));
+  CHECK(L.cols() == 40);
+  CHECK(!try_thin_cholesky((Matrix(2, 2) << 1, 2, 2, 1).finished(), L));
+  CHECK(!try_thin_cholesky((Matrix(2, 2) << 0, 1, 1, 0).finished(), L));
+  CHECK(!try_thin_cholesky((Matrix(2, 2) << 1, 0, 0, -1e-3).finished(), L));
+  CHECK(!try_thin_cholesky(Matrix::Constant(2, 2, std::numeric_limits<double>::quiet_NaN()), L));
+  CHECK(!try_thin_cholesky(Matrix::Zero(2, 3), L));
 }
 
 TEST_CASE("log-sum-exp neither overflows nor loses the smallest") {

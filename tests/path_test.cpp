@@ -277,6 +277,8 @@ TEST_CASE("a branch is kept where it can be, and the path named that leaves it w
   CHECK(other.joints.rows() == T);
   CHECK((other.branch[0] & 1) == 0);
   CHECK(other.reason.find("left-wrist+-elbow-") != std::string::npos);
+  CHECK(other.reason.find("there is a path in " + branch_name(other.branch[0])) != std::string::npos);
+  CHECK(other.faults.size() == 1);
   CHECK(other.sample == 0);
   options.branch = 0;
   CHECK(solve_path(bent_one_way, line, times, options).status == PathStatus::continuous);
@@ -292,6 +294,21 @@ TEST_CASE("a branch is kept where it can be, and the path named that leaves it w
   const JointPath crossing = solve_path(arm, over, times, options);
   CHECK(crossing.status == PathStatus::other_branch);
   CHECK(crossing.branch_changes == 1);
+  CHECK(crossing.faults.size() == 1);
+  CHECK(crossing.reason.find("there is a path") == std::string::npos);  // it changes over
+
+  // One fault does not hide another: the path in another branch jumps, and leaves the hand's path midway.
+  options.branch = 1;
+  const JointPath worse = solve_path(bent_one_way, {line[0], {line[0].rotation, Vector3(-0.4, -0.5, 0.3)}},
+                                     Vector::LinSpaced(2, 0.0, 1.0), options);
+  REQUIRE(worse.faults.size() == 3);
+  CHECK(worse.status == PathStatus::other_branch);
+  CHECK(worse.reason == worse.faults[0].reason);
+  CHECK(worse.reason.find("there is a path") == std::string::npos);
+  CHECK(worse.faults[1].status == PathStatus::jump);
+  CHECK(worse.faults[1].sample == 1);
+  CHECK(worse.faults[2].status == PathStatus::deviates);
+  CHECK(worse.faults[2].sample == 1);
 
   options.branch = 8;
   CHECK_THROWS_AS(solve_path(arm, line, times, options), UsageError);

@@ -78,11 +78,13 @@ struct ClosestApproach {
   Eigen::Index sample = 0;  ///< at this sample, or on the way from it to the next
   double share = 0.0;       ///< of that way, in [0, 1)
   LinkClearance pair;       ///< which link, which obstacle
+  bool complete = true;     ///< false: joints move so far between samples that not all of the way was searched
 };
 
 /// The least distance from the solids along a joint path, every joint going straight from sample to sample: also an
 /// obstacle thinner than a step is found. Intervals are halved until no point of the arm can come more than `tolerance`
-/// closer than the least distance found.
+/// closer than the least distance found, but not over 40 times, nor over 10^6 + 10^3 T times in all: joints that go
+/// round thousands of times between two samples have an end too.
 /// @param joints  T x 6 [rad], T >= 1   @param tolerance  over 0 [m]
 /// @throws DataError [clearance.shape], [clearance.not_finite]
 [[nodiscard]] ClosestApproach closest_approach(const ArmClearance& arm, const Samples& joints, double tolerance = 1e-3);

@@ -38,11 +38,19 @@ enum class PathStatus {
   other_branch     ///< there is a path, but none without a jump in the branch to keep; the one there is is returned
 };
 
+/// One thing wrong with a path.
+struct PathFault {
+  PathStatus status = PathStatus::continuous;
+  Eigen::Index sample = 0;  ///< first given sample where it applies (jump, deviates: the end of the interval)
+  std::string reason;       ///< sentence for people: where and why
+};
+
 /// A joint path, or where and why there is none.
 struct JointPath {
   PathStatus status = PathStatus::continuous;
-  Eigen::Index sample = 0;  ///< first given sample where the status applies (jump, deviates: the end of the interval)
-  std::string reason;       ///< sentence for people: where and why; empty when continuous
+  Eigen::Index sample = 0;        ///< that of the first fault
+  std::string reason;             ///< that of the first fault; empty when continuous
+  std::vector<PathFault> faults;  ///< all there are, at most one a status: other_branch, then jump, then deviates
   std::vector<Eigen::Index> unreachable;  ///< every given sample out of reach
 
   Vector times;                     ///< T >= the samples given: times of the rows, inserted ones among them [s]

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lfdtools/rotation.hpp"
+#include "lfdtools/dh.hpp"
 
 namespace lfd {
 
@@ -31,8 +31,8 @@ struct Scene {
   std::string frame = "base";  ///< base (DH frame 0) or base_link (ROS: turned by pi about z)
   std::vector<Solid> obstacles;
 
-  /// The obstacles in the frame base.
-  [[nodiscard]] std::vector<Solid> in_base() const;
+  /// The obstacles in DH frame 0. @param robot  its own frame of that name is meant, if it has one
+  [[nodiscard]] std::vector<Solid> in_base(const Robot& robot = {}) const;
 };
 
 }  // namespace lfd

@@ -3,6 +3,27 @@
 #include <fmt/format.h>
 
 namespace lfd::cli {
+namespace {
+
+std::string_view gate_of(PathStatus status) {
+  switch (status) {
+    case PathStatus::unreachable:
+      return "unreachable";
+    case PathStatus::outside_limits:
+      return "joint_range";
+    case PathStatus::jump:
+      return "joint_step";
+    case PathStatus::deviates:
+      return "midpoint";
+    case PathStatus::other_branch:
+      return "posture";
+    case PathStatus::continuous:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
 
 void declare_arm_gates(Program& program, ArmLimits& limits) {
   program.number("--max-tcp-speed", limits.tcp_speed, positive, "largest speed of the tool tip [m/s]");
@@ -31,6 +52,19 @@ std::string condition_words(double condition) {
 
 }  // namespace
 
+void judge_start(const JointPath& path, const Recording& recording, const Joints& current, double tolerance, Run& run) {
+  if (path.joints.rows() == 0) return;
+  Eigen::Index joint = 0;
+  const double off = (path.joints.row(0).transpose() - current).cwiseAbs().maxCoeff(&joint);
+  if (!(off > tolerance)) return;
+  const std::string labels = describe(recording.demonstration.labels);
+  run.refuse(
+      "start",
+      fmt::format("{}{}joint {} starts at {:.4g} rad, {:.3g} rad from the {:.4g} rad of --seed-joints, over {:g}",
+                  labels, labels.empty() ? "" : ": ", joint + 1, path.joints(0, joint), off, current[joint], tolerance),
+      recording.place(0));
+}
+
 bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
            const ArmLimits& limits, Run& run) {
   const Labels& labels = recording.demonstration.labels;
@@ -39,25 +73,7 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
     run.refuse(gate, name + text, recording.place(sample));
   };
   const auto given = [&](Eigen::Index row) { return path.given[static_cast<std::size_t>(row)]; };
-  switch (path.status) {
-    case PathStatus::unreachable:
-      refuse("unreachable", path.sample, path.reason);
-      break;
-    case PathStatus::outside_limits:
-      refuse("joint_range", path.sample, path.reason);
-      break;
-    case PathStatus::jump:
-      refuse("joint_step", path.sample, path.reason);
-      break;
-    case PathStatus::deviates:
-      refuse("midpoint", path.sample, path.reason);
-      break;
-    case PathStatus::other_branch:
-      refuse("posture", path.sample, path.reason);
-      break;
-    case PathStatus::continuous:
-      break;
-  }
+  for (const PathFault& fault : path.faults) refuse(gate_of(fault.status), fault.sample, fault.reason);
   if (path.joints.rows() == 0) return false;
   for (std::size_t k = 1; k < path.branch.size(); ++k) {
     if (path.branch[k] == path.branch[k - 1]) continue;

@@ -18,6 +18,10 @@ namespace {
 
 // The least distance along a path is found to this [m].
 constexpr double tolerance = 1e-4;
+// A step over this between two rows is no way that an arm goes straight [rad].
+constexpr double longest_step = 0.5;
+// Of joints written with few digits [rad].
+constexpr double rounding = 1e-6;
 // A covariance whose mean is further from the joints' hand than this belongs to another tool, frame or motion [m].
 constexpr double same_path = 1e-3;
 // Where the way between samples comes this much closer than they do, their probability misses it [m].
@@ -119,11 +123,14 @@ class Spreads {
     Eigen::Index sample = 0;
     const double off = (mean - positions).rowwise().norm().maxCoeff(&sample);
     if (off > same_path) {
-      run_.messages().warning(
-          "clearance.mean_differs",
+      const std::string text =
           fmt::format("{}the hand is {:.1f} mm from the covariance's motion: another --tool or --frame?",
-                      prefix_of(recording.demonstration.labels), 1e3 * off),
-          recording.place(sample));
+                      prefix_of(recording.demonstration.labels), 1e3 * off);
+      if (request_.max_probability) {
+        run_.refuse("mean_differs", text, recording.place(sample));
+      } else {
+        run_.messages().warning("clearance.mean_differs", text, recording.place(sample));
+      }
     }
     return *found;
   }
@@ -138,6 +145,37 @@ class Spreads {
 std::string millimetres(double distance) {
   return distance < 0 ? fmt::format("{:.1f} mm inside", -1e3 * distance)
                       : fmt::format("{:.1f} mm from", 1e3 * distance);
+}
+
+/// Refuses joints that the robot cannot take, and steps whose way between is anybody's guess.
+void judge_joints(const Recording& recording, const Robot& robot, Run& run) {
+  const Samples& joints = recording.demonstration.trajectory.positions;
+  const std::string labels = describe(recording.demonstration.labels);
+  const std::string name = labels.empty() ? labels : labels + ": ";
+  const Joints low = robot.limits.position.col(0), high = robot.limits.position.col(1);
+  const auto beyond = [&](Eigen::Index k) {
+    const Joints q = joints.row(k).transpose();
+    return Joints((low - q).cwiseMax(q - high));
+  };
+  const auto step = [&](Eigen::Index k) {
+    return k == 0 ? Joints(Joints::Zero()) : Joints((joints.row(k) - joints.row(k - 1)).cwiseAbs().transpose());
+  };
+  for (Eigen::Index k = 0, j = 0; k < joints.rows(); ++k) {
+    if (!(beyond(k).maxCoeff(&j) > rounding)) continue;
+    run.refuse("joint_range",
+               fmt::format("{}joint {} is at {:.4g} rad, outside its range of {:.4g} to {:.4g} rad", name, j + 1,
+                           joints(k, j), low[j], high[j]),
+               recording.place(k));
+    break;
+  }
+  for (Eigen::Index k = 0, j = 0; k < joints.rows(); ++k) {
+    if (!(step(k).maxCoeff(&j) > longest_step + rounding)) continue;
+    run.refuse("joint_step",
+               fmt::format("{}joint {} moves {:.3g} rad from one row to the next, over {:g} rad", name, j + 1,
+                           step(k)[j], longest_step),
+               recording.place(k));
+    break;
+  }
 }
 
 /// Where a path comes closest, in words.
@@ -155,6 +193,10 @@ void judge(std::string_view gate, double margin, const ArmClearance& arm, const 
   const std::string text = approach(arm, closest, recording);
   if (closest.distance < margin) {
     run.refuse(gate, fmt::format("{}, under {:g} mm", text, 1e3 * margin), recording.place(closest.sample));
+  }
+  if (!closest.complete) {
+    run.refuse(gate, fmt::format("{}; it moves too far between rows to tell how close it comes there", text),
+               recording.place(closest.sample));
   }
   run.detail(fmt::format("clearance.{}", gate == "clearance" ? "closest" : "closest_self"), text);
 }
@@ -218,7 +260,10 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
                  "largest probability that the path touches anything");
   program.gate("clearance", "a link closer than --margin to an obstacle, at a sample or between two")
       .gate("self_clearance", "with --self: a link inside another of the arm's")
-      .gate("probability", "the path touches with more than --max-probability, where that is given");
+      .gate("probability", "the path touches with more than --max-probability, where that is given")
+      .gate("mean_differs", "with --max-probability: the covariance is that of another hand path")
+      .gate("joint_range", "a joint outside the robot's range")
+      .gate("joint_step", "a joint moves by over 0.5 rad between two rows");
   program.check([&program, &request] {
     if (request.scene.empty() && !request.self) {
       throw UsageError("usage.missing", "there is nothing to keep clear of: give --scene, --self, or both");
@@ -265,7 +310,8 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
   const Pose tool = tool_pose(request.pose);
   std::optional<Capsule> held;
   if (request.pose.tool) held = tool_capsule(tool, request.tool_radius);
-  const ArmClearance arm(std::move(robot), scene.in_base(), held);
+  const std::vector<Solid> solids = scene.in_base(robot);
+  const ArmClearance arm(std::move(robot), solids, held);
   const Spreads spreads(request, arm.robot(), run);
 
   DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
@@ -277,6 +323,7 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
   for (std::size_t i = 0; i < source.recordings(); ++i) {
     const Recording recording = source.recording(i);
     const Trajectory& path = recording.demonstration.trajectory;
+    judge_joints(recording, arm.robot(), run);
     const ClosestApproach closest = closest_approach(arm, path.positions, tolerance);
     judge("clearance", request.margin, arm, closest, recording, run);
     if (request.asks_probability()) warn_of_way(arm, &ArmClearance::least, closest, recording, run);

@@ -11,7 +11,9 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
   program.numbers("--rpy", pose.rpy, {3}, "the same as roll, pitch, yaw about fixed axes [rad]");
   program.numbers("--tool", pose.tool, {3, 7}, "pose of the tool tip in the flange frame, x,y,z[,w,x,y,z]");
   program.text("--frame", pose.frame, "frame of the path: base (DH frame 0), base_link, or one of the robot file's");
-  program.numbers("--seed-joints", request.seed, {6}, "joints to start near to [rad]");
+  program.numbers("--seed-joints", request.seed, {6}, "joints that the arm stands at [rad]: start from there");
+  program.number("--start-tolerance", request.start_tolerance, positive,
+                 "largest difference of a joint from --seed-joints at the start [rad]");
   program.path("--posture", request.posture, "demonstrations with q1..q6: keep their shoulder, elbow and wrist");
   program.flag("--given-rows", request.given_rows, "no rows between those of the input, however far apart they are");
   program.flag("--retime", request.retime, "new times: the fastest motion along the path within the limits");
@@ -23,7 +25,11 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
   program.flag("--diagnostics", request.diagnostics, "add columns branch, residual, condition");
   program.flag("--singularities", request.singularities, "add columns manipulability, shoulder, elbow, wrist");
   declare_arm_gates(program, request.limits);
+  program.gate("start", "the path starts further than --start-tolerance from --seed-joints");
   program.check([&program, &request, &pose] {
+    if (program.given("--start-tolerance") && !request.seed) {
+      throw UsageError("usage.missing", "--start-tolerance needs --seed-joints");
+    }
     if (pose.orientation && pose.rpy) throw UsageError("usage.exclusive", "--orientation and --rpy exclude each other");
     if (request.posture == "-") throw UsageError("usage.posture", "--posture takes a file, not standard input");
     if (request.all && (request.retime || !request.posture.empty())) {

@@ -159,6 +159,7 @@ class Answer {
     std::optional<Rates> rates;
     if (request_.retime && path.joints.rows() > 1) rates = retimed(recording, path);
     if (!judge(path, recording, arm_.robot(), tool_, request_.limits, run_)) return;
+    if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     report_rows(recording, path);
     Samples rows = beside(path.times, path.joints);
     if (!rates) rates = rates_along(path);

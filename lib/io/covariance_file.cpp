@@ -7,8 +7,28 @@
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/io/json_writer.hpp"
+#include "lfdtools/semidefinite.hpp"
 
 namespace lfd {
+namespace {
+
+Matrix read_symmetric(const JsonView& view, Eigen::Index rows) {
+  const Matrix A = view.matrix(rows, rows);
+  if (rows == 0) return A;
+  Eigen::Index i = 0, j = 0;
+  const double off = (A - A.transpose()).cwiseAbs().maxCoeff(&i, &j);
+  if (off > 1e-9 * A.cwiseAbs().maxCoeff()) {
+    view.at(static_cast<std::size_t>(i))
+        .at(static_cast<std::size_t>(j))
+        .fail("covariance.not_symmetric",
+              fmt::format("the covariance is not symmetric: {} here, {} across the diagonal", A(i, j), A(j, i)));
+  }
+  Matrix L;
+  if (!try_thin_cholesky(A, L)) view.fail("covariance.not_positive", "the covariance is not positive semidefinite");
+  return A;
+}
+
+}  // namespace
 
 CovarianceFile read_covariance(const JsonDocument& document) {
   CovarianceFile file;
@@ -46,9 +66,9 @@ CovarianceFile read_covariance(const JsonDocument& document) {
     if (covariance.size() != file.header.columns.size()) {
       covariance.fail("json.wrong_length", "there must be one matrix a column");
     }
-    for (std::size_t a = 0; a < covariance.size(); ++a) file.covariance.push_back(covariance.at(a).matrix(T, T));
+    for (std::size_t a = 0; a < covariance.size(); ++a) file.covariance.push_back(read_symmetric(covariance.at(a), T));
   } else {
-    file.covariance.push_back(covariance.matrix(D * T, D * T));
+    file.covariance.push_back(read_symmetric(covariance, D * T));
   }
   return file;
 }

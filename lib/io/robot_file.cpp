@@ -1,5 +1,7 @@
 #include "lfdtools/io/robot_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "json_check.hpp"
@@ -119,9 +121,14 @@ Robot load_robot(const std::string& path, Messages& messages, bool strict) {
 
 Robot load_robot_with_links(const std::string& path, Messages& messages, bool strict) {
   Robot robot = load_robot(path, messages, strict);
-  if (std::none_of(robot.links.begin(), robot.links.end(), [](const Capsule& link) { return link.frame > 0; })) {
-    throw ConfigError("robot.no_links", "the robot file has no links that move, so there is no body to keep clear",
-                      {path, 0, 0, "/links"});
+  for (int frame = 1; frame <= static_cast<int>(joints); ++frame) {
+    if (std::any_of(robot.links.begin(), robot.links.end(), [&](const Capsule& link) { return link.frame == frame; })) {
+      continue;
+    }
+    throw ConfigError(
+        "robot.no_links",
+        fmt::format("the robot file has no link on frame {}, so not all of the arm can be kept clear", frame),
+        {path, 0, 0, "/links"});
   }
   return robot;
 }

@@ -19,6 +19,10 @@ struct ArmLimits {
 /// Declares the gates and the options that set their limits.
 void declare_arm_gates(Program& program, ArmLimits& limits);
 
+/// Judges how far a path starts from the arm's current joints, whole turns counted. @param tolerance  [rad]
+/// @throws Error(Fault::gate) gate.start
+void judge_start(const JointPath& path, const Recording& recording, const Joints& current, double tolerance, Run& run);
+
 /// Judges a joint path gate by gate. @return false if there is no path to write (its gate was lifted)
 /// @throws Error(Fault::gate) gate.unreachable, joint_range, joint_step, joint_speed, joint_acceleration, tcp_speed,
 ///         tcp_acceleration, condition, branch_change, midpoint, posture; the place is the line of the worst sample

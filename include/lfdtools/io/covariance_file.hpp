@@ -18,7 +18,8 @@ struct CovarianceFile {
 };
 
 /// @throws as read_header and JsonView; [json.wrong_length] where mean or covariance do not fit columns and times,
-///         [covariance.time_not_rising]
+///         [covariance.time_not_rising], [covariance.not_symmetric] to 1e-9 of the largest entry,
+///         [covariance.not_positive]
 [[nodiscard]] CovarianceFile read_covariance(const JsonDocument& document);
 
 /// The covariance times its calibration: of signals a and b, the root of the product of theirs.

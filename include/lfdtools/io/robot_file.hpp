@@ -19,7 +19,7 @@ namespace lfd {
 [[nodiscard]] Robot load_robot(const std::string& path, Messages& messages, bool strict = false);
 
 /// The robot of a file, for programs that need its body.
-/// @throws as load_robot; ConfigError [robot.no_links] unless a link moves
+/// @throws as load_robot; ConfigError [robot.no_links] unless every frame 1..6 has a link
 [[nodiscard]] Robot load_robot_with_links(const std::string& path, Messages& messages, bool strict = false);
 
 /// One line.

@@ -19,7 +19,7 @@ _lfdtools_options() {
     skill-validate) echo "$common $table -j --jobs --seed --methods --road --folds --test --noise-free --repetitions" \
                          "--trim -n --basis -k --components --table --reliability --suggest" ;;
     skill-plot) echo "$common $table --kind --planes --title" ;;
-    ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --posture --given-rows" \
+    ur10-ik) echo "$common $gates --robot --orientation --rpy --tool --frame --seed-joints --start-tolerance --posture --given-rows" \
                   "--retime --acceleration --all --speeds --accelerations --diagnostics --singularities" \
                   "--max-tcp-speed --max-tcp-acceleration --max-condition" ;;
     ur10-fk) echo "$common --robot --tool --frame" ;;
@@ -68,13 +68,13 @@ _lfdtools_words() {
     skill-generate:--band) echo "pointwise path" ;;
     skill-generate:--via | skill-generate:--goal-at | skill-generate:--*-velocity | skill-generate:--approach) return 2 ;;
     ur10-ik:--no-gate) echo "unreachable joint_range joint_step midpoint posture branch_change joint_speed joint_acceleration" \
-                            "tcp_speed tcp_acceleration condition" ;;
-    arm-clearance:--no-gate) echo "clearance self_clearance probability" ;;
+                            "tcp_speed tcp_acceleration condition start" ;;
+    arm-clearance:--no-gate) echo "clearance self_clearance probability mean_differs joint_range joint_step" ;;
     arm-clearance:--scene) echo "table peg-in-hole-B" ;;
     *:--margin | *:--tool-radius | *:--goal-sd) return 2 ;;
     *:-j | *:--jobs | *:--seed | *:--columns | *:--title | *:--target | *:--repetitions | *:--window | *:--samples | *:-n) return 2 ;;
     *:-k | *:--components | *:--restarts | *:--basis | *:--alpha-? | *:--beta-z | *:--starts | *:--goal | *:--start | *:--suggest) return 2 ;;
-    *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--acceleration | *:--max-*) return 2 ;;
+    *:--duration | *:--dt | *:--orientation | *:--rpy | *:--tool | *:--seed-joints | *:--start-tolerance | *:--acceleration | *:--max-*) return 2 ;;
     *) return 1 ;;
   esac
 }
