@@ -283,7 +283,7 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
     }
     (void)tool_pose(request.pose);
   });
-  const std::string elbow_up = "ur10-ik --rpy -1.5708,0,0 --seed-joints 0,-1.5,1.5,0,1.5,0 motions.csv";
+  const std::string elbow_up = "ur10-ik --rpy -1.5708,0,0 --seed-joints=-1.19,-1.77,1.82,-0.06,1.95,-3.14 motions.csv";
   program.example(elbow_up + " | arm-clearance --scene table", "every link's distance from the table");
   program.example(elbow_up + " | arm-clearance --scene table --self --margin 0.01",
                   "refused if anything comes closer than 1 cm to the table, or the arm into itself");

@@ -95,7 +95,10 @@ common = ("-q", "--orientation", "0.7071067811865476,-0.7071067811865476,0,0", "
 plain = groups(run("ur10-ik", *common, text=paths))
 for (_, columns, slow), (_, _, fast) in zip(plain, groups(run("ur10-ik", *common, "--retime", "--speeds", "--accelerations", text=paths))):
     t, q, speed, bend = fast[:, 0], fast[:, 1:7], fast[:, 7:13], fast[:, 13:19]
-    checks.below("retimed: joints changed", np.abs(q - slow[:, 1:7]).max(), 0)
+    # Rows at rest are left out: the others are to the bit among those of the plain path, in their order.
+    kept = [i for i, row in enumerate(slow[:, 1:7]) if (row == q).all(1).any()]
+    checks.below("retimed: joints changed", len(q) - len(kept), 0)
+    checks.below("retimed: joints out of order", np.abs(slow[kept, 1:7] - q).max() if len(kept) == len(q) else 1, 0)
     dt = np.diff(t)
     chord = np.diff(q, axis=0) / dt[:, None]
     second = 2 * np.diff(chord, axis=0) / (dt[1:] + dt[:-1])[:, None]

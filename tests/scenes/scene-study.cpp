@@ -139,14 +139,9 @@ class Study {
       times[k] = seconds * static_cast<double>(k * every) / static_cast<double>(path.rows() - 1);
     }
     std::vector<Matrix> covariance = motion_covariance(posterior, times, Spread::latent);
-    if (const auto& calibration = predictor.skill().calibration) {
-      const Reach reach(change, Vector(task_.start) - predictor.skill().start);
-      const Vector latent = position_variance(predictor, reach, linspace(0, 1, 2)).latent;
-      const double factor = calibration->pointwise[9] / 1.959964;  // of the 95 % band
-      for (std::size_t j = 0; j < covariance.size(); ++j) {
-        const auto axis = static_cast<Eigen::Index>(j);
-        covariance[j] *= factor * factor * (latent[axis] + calibration->target_variance[axis]) / latent[axis];
-      }
+    const Vector factors = covariance_factors(predictor, Reach(change, Vector(task_.start) - predictor.skill().start));
+    for (std::size_t j = 0; j < covariance.size() && factors.size() > 0; ++j) {
+      covariance[j] *= factors[static_cast<Eigen::Index>(j)];
     }
     const auto joints = joints_along(teacher_.arm(), task_.orientation, lesson_.branch, sparse);
     const ArmClearance bodies(teacher_.arm().robot(), task_.obstacles);
