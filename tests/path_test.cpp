@@ -412,3 +412,26 @@ TEST_CASE("one sample, a resting hand, and inputs that cannot be") {
   options.step_slack = 0.9;
   CHECK(id_of({pose}, Vector::Zero(1), options) == "path.options");
 }
+
+TEST_CASE("rows at rest at both ends are left out, and those that hardly differ between") {
+  JointPath path;
+  const std::vector<double> along = {0, 4e-4, -3e-4, 0.01, 0.01005, 0.02, 0.05, 0.0491, 0.0503, 0.0496, 0.05};
+  const auto T = static_cast<Eigen::Index>(along.size());
+  path.times = Vector::LinSpaced(T, 0, 1);
+  path.joints = Samples::Zero(T, 6);
+  path.residual = path.condition = path.midpoint_deviation = path.times;
+  for (Eigen::Index t = 0; t < T; ++t) {
+    path.joints(t, 2) = along[static_cast<std::size_t>(t)];
+    path.branch.push_back(static_cast<int>(t));
+    path.given.push_back(t);
+  }
+  const JointPath moving = without_rest(path, 1e-3);
+  CHECK(moving.given == std::vector<Eigen::Index>{0, 3, 5, 10});
+  CHECK(moving.branch == std::vector<int>{0, 3, 5, 10});
+  REQUIRE(moving.joints.rows() == 4);
+  CHECK(moving.joints(1, 2) == 0.01);
+  CHECK(moving.times[3] == 1);
+  CHECK(moving.condition[2] == path.condition[5]);
+  const JointPath still = without_rest(moving, 1.0);
+  CHECK(still.given == std::vector<Eigen::Index>{0, 10});
+}
