@@ -1,8 +1,8 @@
 #!/bin/sh
 # Experiment B as a rate over many scenes: boxes between start and holes, round which there is one way or two. In each, a
 # teacher who knows the scene demonstrates six holes with the whole arm clear; every method learns from the demonstrations
-# alone; FCL judges what the arm does on the way to four new holes (tests/scenes, man lfdtools(7)). Two seconds to
-# eight a scene and processor.
+# alone; FCL judges what the arm does on the way to four new holes (tests/scenes, man lfdtools(7)). Ten seconds a
+# scene and processor, 20 minutes in all on two.
 #
 #   sh share/lfdtools/peg-in-hole/scenes/run.sh
 #
@@ -43,6 +43,7 @@ scenes() {
     next=$((last + 1))
   done
 }
+touch "$work/one.csv" "$work/two.csv"  # a kind of which none is wanted
 scenes one "${LFD_ONE_WAY:-134}"
 scenes two "${LFD_TWO_WAYS:-66}"
 {
