@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm_fixture.hpp"
 #include "io_fixture.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
@@ -18,12 +19,6 @@ namespace {
 Robot arm_of_file(const std::string& name) {
   CapturedMessages captured;
   return load_robot(find_data_file(name, "robots"), captured.messages, true);
-}
-
-Joints random_joints(Random& random) {
-  Joints q;
-  for (double& angle : q) angle = random.uniform(-std::numbers::pi, std::numbers::pi);
-  return q;
 }
 
 Solid plane(double height) {

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "arm_fixture.hpp"
 #include "io_fixture.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
@@ -13,12 +14,6 @@ using namespace lfd;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-Joints random_joints(Random& random) {
-  Joints q;
-  for (double& angle : q) angle = random.uniform(-pi, pi);
-  return q;
-}
 
 /// Transforms of a calibrated UR10e, about as far from the nominal ones as calibrations are.
 const std::string calibration = R"(kinematics:

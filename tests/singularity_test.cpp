@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm_fixture.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/ur10.hpp"
 
@@ -14,12 +15,6 @@ using namespace lfd;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-Joints random_joints(Random& random) {
-  Joints q;
-  for (double& angle : q) angle = random.uniform(-pi, pi);
-  return q;
-}
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "arm_fixture.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 
@@ -14,12 +15,6 @@ using namespace lfd;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-Joints random_joints(Random& random) {
-  Joints q;
-  for (double& angle : q) angle = random.uniform(-pi, pi);
-  return q;
-}
 
 double apart(const Joints& a, const Joints& b) {
   double largest = 0.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm_fixture.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/ur10.hpp"
@@ -61,12 +62,6 @@ Robot calibrated(const Robot& nominal, double size, Random& random) {
     origin = foot_next;
   }
   return robot;
-}
-
-Joints random_joints(Random& random) {
-  Joints q;
-  for (double& angle : q) angle = random.uniform(-pi, pi);
-  return q;
 }
 
 }  // namespace
