@@ -1,57 +1,16 @@
+// Files of mixtures, primitives and experiments: read as written, refused with their place.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
-#include "io_fixture.hpp"
-#include "lfdtools/io/covariance_file.hpp"
+#include "io_model_fixture.hpp"
 #include "lfdtools/io/dmp_file.hpp"
 #include "lfdtools/io/experiment_file.hpp"
 #include "lfdtools/io/gmm_file.hpp"
-#include "lfdtools/io/robot_file.hpp"
 
 using namespace lfd;
 
 namespace {
-
-Messages silent("prog", MessageFormat::text, true);
-
-/// What a writer writes.
-template <class Write>
-std::string written(Write write) {
-  const ScratchFolder folder;
-  Output out(folder.file("m.json"));
-  write(out);
-  out.finish();
-  return content(folder.file("m.json"));
-}
-
-JsonDocument document(const std::string& text, Fault fault = Fault::data) {
-  JsonOptions options;
-  options.fault = fault;
-  options.strict = true;
-  return {text, "m.json", silent, options};
-}
-
-/// The text with one piece put in place of another, which must be there once.
-std::string changed(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  INFO(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
-
-template <class Read>
-void require_refused(const std::string& text, Read read, const std::string& id, const std::string& pointer,
-                     Fault fault = Fault::data) {
-  const Refusal refusal = refusal_of([&] { (void)read(document(text, fault)); });
-  INFO(text);
-  INFO(refusal.text);
-  REQUIRE(refusal.id == id);
-  REQUIRE(refusal.place.pointer == pointer);
-  REQUIRE(refusal.place.file == "m.json");
-  REQUIRE(refusal.fault == fault);
-}
 
 /// A file whose parts can all be told apart in its text.
 GmmFile small_gmm() {
@@ -83,8 +42,6 @@ GmmFile small_gmm() {
   return file;
 }
 
-const auto text_of = [](const auto& file, auto writer) { return written([&](Output& out) { writer(file, out); }); };
-
 std::string gmm_text() {
   return text_of(small_gmm(), write_gmm);
 }
@@ -108,23 +65,6 @@ std::string dmp_text() {
   file.header.labels.demo = "1";
   file.dmp = small_dmp();
   return text_of(file, write_dmp);
-}
-
-Robot small_robot() {
-  Robot robot;
-  robot.name = "toy";
-  for (int i = 0; i < 6; ++i) robot.dh[static_cast<std::size_t>(i)] = {0.1 * i, -0.5 * i, 0.3, 0.01 * i};
-  robot.limits.position.col(0).setConstant(-6.25);
-  robot.limits.position.col(1).setConstant(6.25);
-  robot.limits.velocity.setConstant(2.5);
-  robot.limits.acceleration = Joints::Constant(40);
-  robot.links.push_back({"forearm", 3, Vector3(0, 0, 0.5), Vector3(0.25, 0, 0), 0.06});
-  robot.frames["base_link"] = {rotation_about_z(3.0), Vector3(1, 2, 3)};
-  return robot;
-}
-
-std::string robot_text() {
-  return text_of(small_robot(), write_robot);
 }
 
 }  // namespace
@@ -282,91 +222,6 @@ TEST_CASE("a primitive that disagrees with itself is refused") {
   covariance("[[1,2,0],[2,1,0],[0,0,1]]", "dmp.not_positive_definite", "/weights_covariance/1");
   covariance("[[1,0.5,0],[0.4,1,0],[0,0,1]]", "dmp.not_symmetric", "/weights_covariance/1/1/0");
   covariance("[[1,0,0],[0,1,0]]", "json.wrong_length", "/weights_covariance/1");
-}
-
-TEST_CASE("a robot is read as it was written, and its faults are status 78") {
-  const std::string text = robot_text();
-  const Robot robot = read_robot(document(text, Fault::config));
-  REQUIRE(text_of(robot, write_robot) == text);
-  REQUIRE(robot.name == "toy");
-  REQUIRE(robot.dh[5].alpha == -2.5);
-  REQUIRE(robot.limits.acceleration);
-  REQUIRE(robot.links[0].frame == 3);
-  REQUIRE((robot.frames.at("base_link").rotation - rotation_about_z(3.0)).cwiseAbs().maxCoeff() < 1e-15);
-  const auto refused = [&](const char* from, const char* to, const char* id, const char* pointer) {
-    require_refused(changed(text, from, to), read_robot, id, pointer, Fault::config);
-  };
-  refused("{\"a\":0,\"alpha\":0,\"d\":0.3,\"theta\":0},", "", "json.wrong_length", "/dh");
-  refused("\"alpha\":0,", "", "json.missing_key", "/dh/0");
-  refused("[[-6.25,6.25]", "[[6.25,6.25]", "robot.limits", "/limits/position/0");
-  refused("\"velocity\":[2.5", "\"velocity\":[0", "json.out_of_range", "/limits/velocity/0");
-  refused("\"frame\":3", "\"frame\":7", "json.out_of_range", "/links/0/frame");
-  refused("\"frame\":3", "\"frame\":2.5", "json.not_an_integer", "/links/0/frame");
-  refused("\"radius\":0.06", "\"radius\":0", "json.out_of_range", "/links/0/radius");
-  refused("\"position\":[1,2,3]", "\"position\":[1,2]", "json.wrong_length", "/frames/base_link/position");
-  refused("\"name\":\"toy\"", "\"nam\":\"toy\"", "json.unknown_key", "/nam");
-  const std::size_t quaternion = text.find("\"orientation\":[");
-  const std::string bad =
-      text.substr(0, quaternion) + "\"orientation\":[2,0,0,0" + text.substr(text.find(']', quaternion));
-  require_refused(bad, read_robot, "rotation.not_unit", "/frames/base_link/orientation", Fault::config);
-}
-
-TEST_CASE("a robot file is loaded by path") {
-  const ScratchFolder folder;
-  REQUIRE(load_robot(folder.write("toy.json", robot_text()), silent).name == "toy");
-  REQUIRE(refusal_of([&] { (void)load_robot(folder.write("bad.json", "{"), silent); }).fault == Fault::config);
-  REQUIRE(refusal_of([&] { (void)load_robot(folder.file("none.json"), silent); }).fault == Fault::no_input);
-}
-
-TEST_CASE("a robot with a joint that carries no link has not all of its body") {
-  const ScratchFolder folder;
-  Robot robot = read_robot(document(robot_text(), Fault::config));
-  const Capsule link = robot.links[0];
-  robot.links.clear();
-  for (int frame = 1; frame <= 6; ++frame) {
-    robot.links.push_back(link);
-    robot.links.back().frame = frame;
-  }
-  REQUIRE(load_robot_with_links(folder.write("toy.json", text_of(robot, write_robot)), silent).links.size() == 6);
-  robot.links[2].frame = 4;
-  const std::string still = folder.write("still.json", text_of(robot, write_robot));
-  const Refusal refusal = refusal_of([&] { (void)load_robot_with_links(still, silent); });
-  REQUIRE(refusal.id == "robot.no_links");
-  REQUIRE(refusal.fault == Fault::config);
-  REQUIRE(refusal.place.pointer == "/links");
-  REQUIRE(refusal.place.file == still);
-}
-
-TEST_CASE("a covariance is read as it was written, one matrix a signal or one of all") {
-  CovarianceFile file;
-  file.header.columns = {"x", "y"};
-  file.header.labels.target = "3";
-  file.spread = Spread::predictive;
-  file.degrees_of_freedom = (Vector(2) << 7.5, std::numeric_limits<double>::infinity()).finished();
-  file.times = (Vector(3) << 0, 0.5, 1).finished();
-  file.mean = (Samples(3, 2) << 1, 2, 3, 4, 5, 6).finished();
-  const Matrix A = (Matrix(3, 3) << 4, 1, 0, 1, 5, 2, 0, 2, 6).finished();
-  for (const bool together : {false, true}) {
-    file.covariance = {A, 2 * A};
-    if (together) file.covariance = {Matrix::Identity(6, 6)};
-    const std::string text = text_of(file, write_covariance);
-    const CovarianceFile back = read_covariance(document(text));
-    REQUIRE(text_of(back, write_covariance) == text);
-    REQUIRE(back.covariance == file.covariance);
-    REQUIRE(back.mean == file.mean);
-    require_refused(changed(text, "\"t\":[0,0.5,1]", "\"t\":[0,0.5,0.5]"), read_covariance,
-                    "covariance.time_not_rising", "/t/2");
-    require_refused(changed(text, "\"t\":[0,0.5,1]", "\"t\":[0,0.5]"), read_covariance, "json.wrong_length", "/mean");
-    require_refused(changed(text, "predictive", "wide"), read_covariance, "covariance.spread", "/spread");
-    require_refused(changed(text, "[7.5,null]", "[7.5]"), read_covariance, "json.wrong_length", "/degrees_of_freedom");
-  }
-  file.covariance = {A, Matrix::Identity(2, 2)};
-  require_refused(text_of(file, write_covariance), read_covariance, "json.wrong_length", "/covariance/1");
-  file.covariance = {A, A};
-  file.covariance[1](2, 0) += 1e-7;
-  require_refused(text_of(file, write_covariance), read_covariance, "covariance.not_symmetric", "/covariance/1/2/0");
-  file.covariance[1] = A - 10 * Matrix::Identity(3, 3);
-  require_refused(text_of(file, write_covariance), read_covariance, "covariance.not_positive", "/covariance/1");
 }
 
 TEST_CASE("an experiment states everything, and is read as it was written") {
