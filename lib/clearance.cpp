@@ -101,6 +101,36 @@ std::vector<LinkClearance> ArmClearance::pairs_of_arm_itself(const Joints& q) co
   return all;
 }
 
+Separation ArmClearance::part(const LinkClearance& pair, const Frames& frames) const {
+  const Capsule& body = bodies()[static_cast<std::size_t>(pair.link)];
+  const auto obstacle = static_cast<std::size_t>(pair.obstacle);
+  if (obstacle < solids_.size()) return separation(axis_of(body, frames), body.radius, solids_[obstacle]);
+  const Capsule& other = bodies()[obstacle - solids_.size()];
+  return separation(axis_of(body, frames), body.radius, axis_of(other, frames), other.radius);
+}
+
+/// A lower bound of the distance: how far apart the bodies are along the pair's normal, all of them being convex.
+double ArmClearance::at_least(const LinkClearance& pair, const Frames& frames) const {
+  const Capsule& body = bodies()[static_cast<std::size_t>(pair.link)];
+  const auto obstacle = static_cast<std::size_t>(pair.obstacle);
+  const Segment axis = axis_of(body, frames);
+  const double near = std::min(pair.normal.dot(axis.from), pair.normal.dot(axis.to)) - body.radius;
+  if (obstacle < solids_.size()) return near - (pair.normal.dot(pair.point) - body.radius - pair.distance);
+  const Capsule& other = bodies()[obstacle - solids_.size()];
+  const Segment line = axis_of(other, frames);
+  return near - (std::max(pair.normal.dot(line.from), pair.normal.dot(line.to)) + other.radius);
+}
+
+double ArmClearance::distance(const LinkClearance& pair, const Frames& frames) const {
+  return part(pair, frames).distance;
+}
+
+bool ArmClearance::any_closer(const std::vector<LinkClearance>& pairs, double margin, const Frames& frames) const {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const LinkClearance& pair) {
+    return at_least(pair, frames) <= margin && part(pair, frames).distance <= margin;
+  });
+}
+
 double ArmClearance::least(const Joints& q) const {
   const Frames frames = joint_frames(robot_, q);
   double least = nothing_near;

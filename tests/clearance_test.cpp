@@ -117,6 +117,29 @@ TEST_CASE("each link has its closest solid, and the least is the least of all") 
   }
 }
 
+TEST_CASE("pairs measured elsewhere have the same distances, and tell the same of what is closer") {
+  const ArmClearance arm(arm_of_file("ur10"), cell(), tool_capsule({Matrix3::Identity(), {0, 0.05, 0.2}}, 0.02));
+  Random random(11);
+  for (int i = 0; i < 300; ++i) {
+    const Joints q = random_joints(random);
+    const auto frames = joint_frames(arm.robot(), q);
+    const Joints elsewhere = i % 2 == 0 ? random_joints(random) : Joints(q + 0.05 * random_joints(random));
+    for (const bool own : {false, true}) {
+      const auto measured = own ? arm.pairs_of_arm_itself(elsewhere) : arm.pairs(elsewhere);
+      const auto here = own ? arm.pairs_of_arm_itself(q) : arm.pairs(q);
+      REQUIRE(measured.size() == here.size());
+      for (std::size_t k = 0; k < here.size(); ++k) {
+        const double d = here[k].distance;
+        CHECK(arm.distance(measured[k], frames) == d);
+        CHECK(arm.any_closer({measured[k]}, d + 1e-9, frames));
+        CHECK_FALSE(arm.any_closer({measured[k]}, d - 1e-9, frames));
+      }
+      CHECK(arm.any_closer(measured, (own ? arm.least_of_arm_itself(q) : arm.least(q)) + 1e-9, frames));
+      CHECK_FALSE(arm.any_closer(measured, (own ? arm.least_of_arm_itself(q) : arm.least(q)) - 1e-9, frames));
+    }
+  }
+}
+
 TEST_CASE("the slope is the derivative of the distance by the joints") {
   const ArmClearance arm(arm_of_file("ur10e"), cell(), tool_capsule({Matrix3::Identity(), {0.02, 0, 0.15}}, 0.01));
   Random random(2);

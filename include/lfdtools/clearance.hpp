@@ -1,6 +1,7 @@
 // How far every link of the arm stays from what stands around it, and from the arm itself.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,14 @@ class ArmClearance {
   /// Every pair of links that is not left aside; `link` is the one further along the arm.
   [[nodiscard]] std::vector<LinkClearance> pairs_of_arm_itself(const Joints& q) const;
 
+  /// Distance of the same two bodies at other joints [m]. @param frames  as joint_frames gives them
+  [[nodiscard]] double distance(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
+  /// Whether any of the pairs is no further apart than `margin`. They may have been measured at other joints, best near
+  /// these: the plane that parted two bodies there shows of most, without their distance, that they are further.
+  /// @param margin  [m]   @param frames  as joint_frames gives them
+  [[nodiscard]] bool any_closer(const std::vector<LinkClearance>& pairs, double margin,
+                                const std::array<Pose, 7>& frames) const;
+
   /// Least distance of all pairs(q); infinite without solids.
   [[nodiscard]] double least(const Joints& q) const;
   /// Least distance of all pairs_of_arm_itself(q).
@@ -62,6 +71,8 @@ class ArmClearance {
   [[nodiscard]] double furthest_motion(const Joints& q, const Joints& range) const;
 
  private:
+  [[nodiscard]] Separation part(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
+  [[nodiscard]] double at_least(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
   [[nodiscard]] bool counts(const Capsule& body, std::size_t solid) const {
     return body.frame > 1 || (body.frame == 1 && !stood_on_[solid]);
   }

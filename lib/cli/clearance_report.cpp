@@ -44,16 +44,6 @@ Samples tips(const Robot& robot, const Samples& joints, const Pose& tool) {
   return positions;
 }
 
-/// Share of the way that the tip has covered, 0 at the first sample and 1 at the last.
-Vector share_of_way(const Samples& positions) {
-  Vector way = Vector::Zero(positions.rows());
-  for (Eigen::Index k = 1; k < way.size(); ++k) {
-    way[k] = way[k - 1] + (positions.row(k) - positions.row(k - 1)).norm();
-  }
-  const double whole = way[way.size() - 1];
-  return whole > 0 ? Vector(way / whole) : Vector(Vector::Ones(way.size()));
-}
-
 /// The spread of one path, and what it is checked against.
 class Spreads {
  public:
@@ -89,14 +79,8 @@ class Spreads {
     if (!request_.goal_sd) return spread;
     const auto& sd = *request_.goal_sd;
     const Vector3 each = sd.size() == 1 ? Vector3(Vector3::Constant(sd[0])) : Vector3(sd[0], sd[1], sd[2]);
-    HandSpread shift = with_shift({}, each, share_of_way(positions));
-    for (Eigen::Index k = 0; k < shift.samples(); ++k) {
-      shift.factor.middleRows(3 * k, 3) = (frame_.rotation * shift.factor.middleRows(3 * k, 3)).eval();
-    }
-    if (files_.empty()) return shift;
-    HandSpread both{Matrix(shift.factor.rows(), spread.factor.cols() + 3)};
-    both.factor << spread.factor, shift.factor;
-    return both;
+    const HandSpread shift = hand_shift(each, share_of_way(positions), frame_.rotation);
+    return files_.empty() ? shift : together(spread, shift);
   }
 
  private:

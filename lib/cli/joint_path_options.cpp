@@ -36,7 +36,7 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
       throw UsageError("usage.exclusive", "--all writes solutions, not a path that --retime or --posture could shape");
     }
     if (request.all) {
-      for (const char* other : {"--diagnostics", "--singularities", "--speeds", "--accelerations", "--given-rows"}) {
+      for (const char* other : {"--speeds", "--accelerations", "--given-rows"}) {
         if (program.given(other)) {
           throw UsageError("usage.exclusive",
                            fmt::format("--all writes solutions, not a path, so it excludes {}", other));

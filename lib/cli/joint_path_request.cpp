@@ -129,13 +129,13 @@ class Answer {
   }
 
   [[nodiscard]] std::vector<std::string> columns() const {
-    if (request_.all) return joined({"t", "solution"}, joint_names);
-    auto columns = joined({"t"}, joint_names);
+    auto columns = joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"},
+                          joint_names);
     if (request_.speeds) columns = joined(columns, speed_names);
     if (request_.accelerations) columns = joined(columns, acceleration_names);
     if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
     if (request_.singularities) columns = joined(columns, {"manipulability", "shoulder", "elbow", "wrist"});
-    return joined(columns, passed_);
+    return request_.all ? columns : joined(columns, passed_);
   }
 
   void write_solutions(const Recording& recording, const std::vector<Pose>& poses, LabelledTable& out) {
@@ -145,7 +145,13 @@ class Answer {
       if (found.empty()) run_.messages().warning("ik.unreachable", "the pose is out of reach", recording.place(row));
       for (std::size_t k = 0; k < found.size(); ++k) {
         Samples cells(1, 8);
-        cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1), found[k].joints.transpose();
+        const Joints& q = found[k].joints;
+        cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1), q.transpose();
+        if (request_.diagnostics) {
+          const double condition = condition_number(jacobian(arm_.robot(), q));
+          cells = beside(cells, Eigen::RowVector3d(found[k].branch, found[k].residual, condition));
+        }
+        if (request_.singularities) cells = beside(cells, singularities(q));
         out.write(recording.demonstration.labels, cells);
       }
     }
@@ -160,6 +166,7 @@ class Answer {
     if (request_.retime && path.joints.rows() > 1) rates = retimed(recording, path);
     if (!judge(path, recording, arm_.robot(), tool_, request_.limits, run_)) return;
     if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
+    warn_of_postures(path, recording);
     report_rows(recording, path);
     Samples rows = beside(path.times, path.joints);
     if (!rates) rates = rates_along(path);
@@ -214,6 +221,20 @@ class Answer {
     return rates;
   }
 
+  /// Says where a path starts in another posture than the first: the arm would have to turn over between them.
+  void warn_of_postures(const JointPath& path, const Recording& recording) {
+    const int branch = path.branch.front();
+    if (!first_branch_) first_branch_ = branch;
+    if (branch == *first_branch_) return;
+    const std::string words = describe(recording.demonstration.labels);
+    run_.messages().warning("ik.postures_differ",
+                            fmt::format("{}starts in posture {}, the first path in {}: --seed-joints or --posture hold "
+                                        "them together",
+                                        words.empty() ? "the path " : words + " ", branch_name(branch),
+                                        branch_name(*first_branch_)),
+                            recording.place(0));
+  }
+
   void report_rows(const Recording& recording, const JointPath& path) {
     std::size_t more = 0, first = 0;
     for (std::size_t row = path.given.size(); row-- > 0;) {
@@ -249,11 +270,14 @@ class Answer {
   [[nodiscard]] Samples singularities(const JointPath& path) const {
     Samples figures(path.times.size(), 4);
     for (Eigen::Index t = 0; t < figures.rows(); ++t) {
-      const Joints q = path.joints.row(t).transpose();
-      const SingularityDistances d = singularity_distances(arm_.geometry(), q);
-      figures.row(t) << manipulability(jacobian(arm_.robot(), q)), d.shoulder, d.elbow, d.wrist;
+      figures.row(t) = singularities(path.joints.row(t).transpose());
     }
     return figures;
+  }
+
+  [[nodiscard]] Eigen::RowVector4d singularities(const Joints& q) const {
+    const SingularityDistances d = singularity_distances(arm_.geometry(), q);
+    return {manipulability(jacobian(arm_.robot(), q)), d.shoulder, d.elbow, d.wrist};
   }
 
   /// Values at the given times, at others linearly between.
@@ -275,6 +299,7 @@ class Answer {
   Pose tool_;
   InverseKinematics arm_;
   PathOptions options_;
+  std::optional<int> first_branch_;
   bool quaternions_ = false;
   std::vector<std::string> passed_;
 };

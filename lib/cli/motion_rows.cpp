@@ -48,8 +48,8 @@ void write_covariance_of(const MotionPosterior& posterior, const Motion& motion,
   const Eigen::Index T = motion.times.size();
   const Eigen::Index D = motion.positions.cols();
   CovarianceFile file{
-      header,       request.spread(), request.spread() == Spread::latent ? calibration : Vector(), Vector(D),
-      motion.times, motion.positions, motion_covariance(posterior, motion.times, request.spread())};
+      header,       request.spread(), request.spread() == Spread::latent ? calibration : Vector(),  Vector(D),
+      motion.times, motion.positions, motion_covariance(posterior, motion.times, request.spread()), Matrix()};
   for (const auto& block : posterior.blocks) {
     for (const int j : block.outputs) file.degrees_of_freedom[j] = block.degrees_of_freedom;
   }
@@ -61,7 +61,8 @@ void write_covariance_of(const MotionPosterior& posterior, const Motion& motion,
       }
       file.covariance.assign(1, joint);
     }
-    Matrix F(D * T, D);
+    Matrix& F = file.goal_factor;
+    F.resize(D * T, D);
     for (Eigen::Index j = 0; j < D; ++j) F.middleRows(j * T, T) = goal.factors[static_cast<std::size_t>(j)];
     file.covariance.front() += F * F.transpose();
   }

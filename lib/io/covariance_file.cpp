@@ -35,7 +35,7 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   file.header = read_header(document, "lfdtools.covariance");
   const JsonView root = document.root();
   root.only({"format", "version", "columns", "target", "demo", "teacher", "spread", "degrees_of_freedom", "calibration",
-             "t", "mean", "covariance", "provenance"});
+             "t", "mean", "covariance", "goal_factor", "provenance"});
   const std::string spread = root.at("spread").string();
   if (spread != "latent" && spread != "predictive") {
     root.at("spread").fail("covariance.spread", "the spread is latent or predictive");
@@ -70,6 +70,10 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   } else {
     file.covariance.push_back(read_symmetric(covariance, D * T));
   }
+  if (const auto goal = root.find("goal_factor")) {
+    if (file.covariance.size() > 1) goal->fail("covariance.goal_factor", "a goal moves all signals at once");
+    file.goal_factor = goal->matrix(D * T, D);
+  }
   return file;
 }
 
@@ -77,14 +81,17 @@ std::vector<Matrix> calibrated(const CovarianceFile& file) {
   std::vector<Matrix> scaled = file.covariance;
   if (file.calibration.size() == 0) return scaled;
   const Eigen::Index T = file.times.size();
-  if (scaled.size() > 1 || file.calibration.size() == 1) {
+  if (scaled.size() > 1) {
     for (std::size_t a = 0; a < scaled.size(); ++a) scaled[a] *= file.calibration[static_cast<Eigen::Index>(a)];
     return scaled;
   }
+  const bool goal = file.goal_factor.size() > 0;
   const Vector roots = file.calibration.cwiseSqrt();
+  if (goal) scaled.front() -= file.goal_factor * file.goal_factor.transpose();
   for (Eigen::Index a = 0; a < roots.size(); ++a) {
     for (Eigen::Index b = 0; b < roots.size(); ++b) scaled.front().block(a * T, b * T, T, T) *= roots[a] * roots[b];
   }
+  if (goal) scaled.front() += file.goal_factor * file.goal_factor.transpose();
   return scaled;
 }
 
@@ -112,6 +119,7 @@ void write_covariance(const CovarianceFile& file, Output& out) {
     for (const Matrix& part : file.covariance) json.matrix(part);
     json.end_array();
   }
+  if (file.goal_factor.size() > 0) json.key("goal_factor").matrix(file.goal_factor);
   write_provenance(json, file.header);
   json.write_line(out);
 }

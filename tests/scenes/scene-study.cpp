@@ -1,8 +1,8 @@
 // One scene of experiment B: a teacher who knows it demonstrates, every method learns from the demonstrations alone,
 // and FCL judges what each does at the new holes. CSV on standard output, a row a motion:
 //   scene,ways,method,target,outcome,reason,clearance,outside,hand_length,joint_length,jerk,seconds,probability
-// (probability: of touching, as the default skill's calibrated latent covariance has it through the arm's Jacobian) or,
-// for a scene that the teacher cannot show or that asks for no detour, one row with the outcome set_aside.
+// (probability: of touching, told beforehand, where something is drawn) or, for a scene that the teacher cannot show or
+// that asks for no detour, one row with the outcome set_aside.
 //
 //   scene-study one|two NUMBER [FOLDER]   a scene with one way round or two; FOLDER: the demonstrations (with joints),
 //                                         the goals and the scene are left there as files
@@ -13,15 +13,14 @@
 #include <fstream>
 #include <map>
 
+#include "banded_skill.hpp"
 #include "lesson.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
 #include "lfdtools/methods.hpp"
 #include "lfdtools/metrics.hpp"
-#include "lfdtools/posterior.hpp"
 #include "lfdtools/touching.hpp"
 #include "lfdtools/validation.hpp"
-#include "lfdtools/ways.hpp"
 #include "planner.hpp"
 #include "verdict.hpp"
 
@@ -34,6 +33,15 @@ double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// How far the goal may be off in judge_chances, in each axis [m].
+constexpr double goal_sd = 0.02;
+
+Vector normals(Eigen::Index n, Random random) {
+  Vector z(n);
+  for (double& value : z) value = random.normal();
+  return z;
 }
 
 class Study {
@@ -61,7 +69,13 @@ class Study {
     }
     if (!folder.empty()) write(folder);
     judge_methods();
-    judge_parted();
+    std::vector<SkillRow> rows;
+    for (const auto& target : training_) {
+      for (const auto& example : target.examples) rows.push_back({target.labels, example.primitive});
+    }
+    const BandedSkill banded(std::move(rows));
+    judge_chances(banded);
+    judge_parted(banded);
     judge_controls();
     judge_planners();
   }
@@ -83,12 +97,7 @@ class Study {
                   const FclScene& scene) {
     const Verdict verdict =
         judge(teacher_.arm(), scene, task_.orientation, path, start_joints(), lesson_.branch, seconds);
-    std::string probability;
-    if (method == "skill" && verdict.outcome != Outcome::refused) {
-      probability = fmt::format("{:.5f}", chance_of_touching(hole, path));
-    }
-    row(method, hole.target, verdict, path.allFinite() ? outside_depth(path, query(hole), judged()) : 0.0, taken,
-        probability);
+    row(method, hole.target, verdict, path.allFinite() ? outside_depth(path, query(hole), judged()) : 0.0, taken);
   }
 
   [[nodiscard]] Joints start_joints() const {
@@ -105,47 +114,62 @@ class Study {
     return pointers;
   }
 
-  /// The default skill, learnt once more for its covariance; one a way round.
-  void learn_covariance() {
-    for (const auto& target : training_) {
-      for (const auto& example : target.examples) rows_.push_back({target.labels, example.primitive});
-    }
-    const std::vector<std::string> xyz = {"x", "y", "z"};
-    SkillOptions options;
-    options.kernel = choose_kernel(xyz, rows_, options);
-    const Skill together = train_skill(xyz, rows_, options);
-    ways_ = two_ways(together, rows_);
-    for (const int way : {0, 1}) {
-      if (!ways_ && way == 1) break;
-      const auto of_way = ways_ ? rows_of_way(rows_, *ways_, way) : rows_;
-      Skill skill = ways_ ? train_skill(xyz, of_way, options) : together;
-      skill.calibration = calibrate(skill, of_way, options);
-      predictors_.emplace_back(std::move(skill));
-    }
+  [[nodiscard]] std::optional<Samples> joints_of(const Samples& path) const {
+    return joints_along(teacher_.arm(), task_.orientation, lesson_.branch, path);
   }
 
-  [[nodiscard]] double chance_of_touching(const Hole& hole, const Samples& path) {
-    if (predictors_.empty()) learn_covariance();
-    const Vector change = hole.position - task_.start;
-    const SkillPredictor& predictor =
-        predictors_.at(ways_ ? static_cast<std::size_t>(nearest_way(rows_, *ways_, change)) : 0);
-    const MotionPosterior posterior = predict_motion(predictor, {{}, hole.position, Vector(task_.start), seconds});
-    constexpr Eigen::Index every = 5;
-    const Eigen::Index n = (path.rows() + every - 1) / every;
-    Samples sparse(n, 3);
-    Vector times(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      sparse.row(k) = path.row(k * every);
-      times[k] = seconds * static_cast<double>(k * every) / static_cast<double>(path.rows() - 1);
+  [[nodiscard]] double chance_of_touching(const Samples& joints, const HandSpread& spread) const {
+    std::vector<Solid> solids = task_.obstacles;
+    solids.insert(solids.end(), task_.ground.begin(), task_.ground.end());
+    const ArmClearance bodies(teacher_.arm().robot(), solids);
+    return touching(bodies, joints, spread, {}, {.self = true}).path.probability;
+  }
+
+  /// What becomes of one of the paths that `told`, the probability of touching, speaks of.
+  void judge_draw(const std::string& method, const Hole& hole, const Samples& path, double told) {
+    Verdict verdict;
+    if (const auto joints = joints_of(path)) {
+      verdict.clearance = least_distance(fcl_, *joints);
+      verdict.outcome = verdict.clearance > 0 ? Outcome::clear : Outcome::collided;
+    } else {
+      verdict.reason = "unreachable";
     }
-    std::vector<Matrix> covariance = motion_covariance(posterior, times, Spread::latent);
-    const Vector factors = covariance_factors(predictor, Reach(change, Vector(task_.start) - predictor.skill().start));
-    for (std::size_t j = 0; j < covariance.size() && factors.size() > 0; ++j) {
-      covariance[j] *= factors[static_cast<Eigen::Index>(j)];
+    row(method, hole.target, verdict, 0, 0, fmt::format("{:.5f}", told));
+  }
+
+  /// The probability of touching, and how often what it speaks of does touch: paths drawn from the skill's covariance,
+  /// the same about the skill's way to where a goal that is off was seen.
+  void judge_chances(const BandedSkill& banded) {
+    constexpr Eigen::Index every = 2;
+    constexpr std::uint64_t draws = 5;
+    const auto sparse = [&](const Samples& path) {
+      return Samples(path(Eigen::seq(0, path.rows() - 1, Eigen::fix<every>), Eigen::all));
+    };
+    for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
+      const Hole& hole = task_.new_holes[i];
+      const Samples path = sparse(skill_paths_[i]);
+      const auto joints = joints_of(path);
+      if (!joints) continue;
+      const Random random = random_.split(3).split(i);
+      const Vector times = linspace(0, seconds, path.rows());
+      Goal goal{{}, hole.position, Vector(task_.start), seconds};
+      const auto drawn = [&](const HandSpread& spread, const Random& key) {
+        return Samples((spread.factor * normals(spread.factor.cols(), key)).reshaped<Eigen::RowMajor>(path.rows(), 3));
+      };
+      const HandSpread spread = banded.spread(goal, times);
+      const double told = chance_of_touching(*joints, spread);
+      judge_draw("skill-itself", hole, path, told);
+      for (std::uint64_t k = 0; k < draws; ++k) {
+        judge_draw("skill-drawn", hole, path + drawn(spread, random.split(1).split(k)), told);
+      }
+      goal.covariance = goal_sd * goal_sd * Matrix3::Identity();
+      const double told_of_goal = chance_of_touching(*joints, banded.spread(goal, times));
+      for (std::uint64_t k = 0; k < draws; ++k) {
+        const Vector3 seen = hole.position + goal_sd * normals(3, random.split(2).split(k));
+        const Samples went = sparse(skill_({task_.start, seen, 1, {}}).path);
+        judge_draw("skill-goal-off", hole, went + drawn(spread, random.split(4).split(k)), told_of_goal);
+      }
     }
-    const auto joints = joints_along(teacher_.arm(), task_.orientation, lesson_.branch, sparse);
-    const ArmClearance bodies(teacher_.arm().robot(), task_.obstacles);
-    return touching(bodies, *joints, hand_spread(covariance, Matrix3::Identity())).path.probability;
   }
 
   void judge_methods() {
@@ -168,18 +192,19 @@ class Study {
         judge_path(method.name, hole, path, learnt + processor_time() - asked, fcl_);
         if (method.name == "skill") skill_paths_.push_back(path);
       }
+      if (method.name == "skill") skill_ = predictor;
     }
   }
 
   /// The opponents, learnt of each way by itself, as the default skill does: what is then left is the learning.
-  void judge_parted() {
-    if (!ways_) return;
+  void judge_parted(const BandedSkill& banded) {
+    if (!banded.ways()) return;
     const PreparationOptions preparation;
     std::vector<TrainingTarget> parted[2];
     std::size_t row = 0;
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       std::vector<Trajectory> of_way[2];
-      for (const auto& shown : targets_[i].demonstrations) of_way[ways_->of_row[row++]].push_back(shown);
+      for (const auto& shown : targets_[i].demonstrations) of_way[banded.ways()->of_row[row++]].push_back(shown);
       for (const int way : {0, 1}) {
         if (of_way[way].empty()) continue;
         parted[way].push_back(training_target(targets_[i].labels, of_way[way], preparation, {true, true}, i));
@@ -195,7 +220,7 @@ class Study {
       }
       if (predictors.size() < 2) continue;
       for (const Hole& hole : task_.new_holes) {
-        const auto way = static_cast<std::size_t>(nearest_way(rows_, *ways_, hole.position - task_.start));
+        const std::size_t way = banded.way_to(hole.position - task_.start);
         judge_path(method.name + "+ways", hole, predictors[way](query(hole)).path, 0, fcl_);
       }
     }
@@ -325,9 +350,7 @@ class Study {
   std::vector<JudgedTarget> judged_;
   std::vector<TrainingTarget> training_;
   std::vector<Samples> skill_paths_;
-  std::vector<SkillRow> rows_;
-  std::optional<Ways> ways_;
-  std::vector<SkillPredictor> predictors_;  // of the default skill, by way
+  Predictor skill_;  // the default one
 };
 
 }  // namespace

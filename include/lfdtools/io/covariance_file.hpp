@@ -15,6 +15,7 @@ struct CovarianceFile {
   Vector times;                    ///< T [s]
   Samples mean;                    ///< T x D [m]
   std::vector<Matrix> covariance;  ///< D of T x T, or one D T x D T, by signal, then by time [m^2]
+  Matrix goal_factor;  ///< F, D T x D: F F^T, of `covariance`, comes of the goal; empty: it is exactly known
 };
 
 /// @throws as read_header and JsonView; [json.wrong_length] where mean or covariance do not fit columns and times,
@@ -22,7 +23,8 @@ struct CovarianceFile {
 ///         [covariance.not_positive]
 [[nodiscard]] CovarianceFile read_covariance(const JsonDocument& document);
 
-/// The covariance times its calibration: of signals a and b, the root of the product of theirs.
+/// The covariance times its calibration: of signals a and b, the root of the product of theirs. What comes of the goal
+/// stays as it is.
 [[nodiscard]] std::vector<Matrix> calibrated(const CovarianceFile& file);
 
 /// One line.

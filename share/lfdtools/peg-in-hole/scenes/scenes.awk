@@ -2,6 +2,17 @@
 # four of a scene are not independent, elsewhere.
 BEGIN { FS = ","; z = 1.959964 }
 NR == 1 { next }
+$13 != "" {
+  if ($5 == "refused") next
+  bin = $13 < 0.001 ? 1 : $13 < 0.01 ? 2 : $13 < 0.1 ? 3 : 4
+  key = $3 "," bin
+  motion = key "," $1 "," $2 "," $4
+  if (!(motion in drawn)) { told_motions[key]++; told[key] += $13 }
+  drawn[motion]++
+  hit[motion] += $5 == "collided"
+  told_of[motion] = $13
+  next
+}
 $5 == "set_aside" { aside[$2 "," $6]++; asides[$6] = 1; next }
 {
   key = $2 "," $3
@@ -17,11 +28,6 @@ $5 == "set_aside" { aside[$2 "," $6]++; asides[$6] = 1; next }
   if (!(scene in of_scene)) scenes[key]++
   of_scene[scene] += $5 == "clear"
   if (of_scene[scene] == 4) whole[key]++
-  if ($3 == "skill" && $13 != "") {
-    told[$2] += $13; told_count[$2]++; touched[$2] += $5 == "collided"
-    bin = $13 < 0.01 ? 1 : $13 < 0.1 ? 2 : 3
-    bin_told[bin] += $13; bin_count[bin]++; bin_touched[bin] += $5 == "collided"
-  }
   motion = $2 "," $1 "," $4
   clear[motion "," $3] = $5 == "clear"
   if ($3 == "skill") { all_motions[++motion_count] = motion; ways_of[motion] = $2; scene_of[motion] = $1 }
@@ -73,7 +79,30 @@ END {
     gain_over("opponents with the ways parted", "teacher largest-detour", 1)
     print ""
   }
-  split("under 0.01,0.01 to 0.1,over 0.1", names, ",")
-  printf "probability of touching of the skill's motions, and how many collided\n"
-  for (bin = 1; bin <= 3; ++bin) if (bin_count[bin]) printf "%-12s %4d motions, mean told %.4f, collided %s %%\n", names[bin], bin_count[bin], bin_told[bin] / bin_count[bin], wilson(bin_touched[bin], bin_count[bin])
+  # A motion counts once, by the share of its draws that touch, and a scene's four are not told apart: the interval is
+  # the normal one over motions.
+  bins = split("under 0.001,0.001 to 0.01,0.01 to 0.1,over 0.1", names, ",")
+  kinds = split("skill-drawn,skill-goal-off,skill-itself", kind, ",")
+  about["skill-drawn"] = "paths drawn from the covariance of the skill"
+  about["skill-goal-off"] = "the same about its way to goals that are off by 2 cm an axis"
+  about["skill-itself"] = "the mean of the skill, in the middle of what is drawn"
+  for (m = 1; m <= kinds; ++m) {
+    printf "probability of touching, told and seen, percent: %s\n", about[kind[m]]
+    for (bin = 1; bin <= bins; ++bin) {
+      key = kind[m] "," bin
+      if (!told_motions[key]) continue
+      n = sum = squares = seen = 0
+      for (motion in drawn) {
+        if (index(motion, key ",") != 1) continue
+        ++n
+        share = hit[motion] / drawn[motion]
+        seen += share
+        sum += share - told_of[motion]
+        squares += (share - told_of[motion]) ^ 2
+      }
+      mean = sum / n
+      sd = n > 1 ? sqrt((squares - n * mean * mean) / (n - 1)) : 0
+      printf "%-14s %4d motions: told %6.2f, seen %6.2f, seen less told %6.2f (%.2f to %.2f)\n", names[bin], n, 100 * told[key] / n, 100 * seen / n, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
+    }
+  }
 }
