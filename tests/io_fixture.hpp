@@ -1,4 +1,4 @@
-// What the tests of files share: a scratch folder, captured messages, and the refusal that a call ends with.
+// What the tests of files share: a scratch folder, captured messages, inputs from memory.
 #pragma once
 
 #include <unistd.h>
@@ -13,6 +13,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/io/input.hpp"
 #include "lfdtools/io/message.hpp"
+#include "refusal.hpp"
 
 /// A folder of its own, removed at the end.
 struct ScratchFolder {
@@ -54,24 +55,6 @@ struct CapturedMessages {
 
   [[nodiscard]] std::string text() const { return content(folder.file("messages")); }
 };
-
-/// How a call was refused; an empty id: it was not.
-struct Refusal {
-  lfd::Fault fault = lfd::Fault::internal;
-  std::string id;
-  std::string text;
-  lfd::Place place;
-};
-
-template <class Call>
-Refusal refusal_of(Call call) {
-  try {
-    call();
-  } catch (const lfd::Error& error) {
-    return {error.fault(), error.id(), error.what(), error.place()};
-  }
-  return {};
-}
 
 /// Inputs from memory, named a.csv, b.csv, ...
 inline std::vector<lfd::Input> inputs_of(const std::vector<std::string>& texts) {

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <numbers>
 
+#include "arm_fixture.hpp"
 #include "io_fixture.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
@@ -45,17 +46,6 @@ Samples still(Eigen::Index T) {
   return bent.transpose().replicate(T, 1);
 }
 
-/// Covariance of one signal over time: smooth, of standard deviation sd and length scale l samples.
-Matrix smooth(Eigen::Index T, double sd, double l) {
-  Matrix A(T, T);
-  for (Eigen::Index i = 0; i < T; ++i) {
-    for (Eigen::Index j = 0; j < T; ++j) {
-      A(i, j) = sd * sd * std::exp(-0.5 * std::pow(static_cast<double>(i - j) / l, 2));
-    }
-  }
-  return A;
-}
-
 /// Told within four of its own standard errors, which are no excuse.
 bool is(const Chance& told, double p) {
   CAPTURE(told.probability, told.error, p);
@@ -65,52 +55,7 @@ bool is(const Chance& told, double p) {
 
 }  // namespace
 
-TEST_CASE("a spread is the covariance of the file, by sample and turned into the base") {
-  const Eigen::Index T = 5;
-  const std::vector<Matrix> parts = {smooth(T, 0.01, 2), smooth(T, 0.02, 3), smooth(T, 0.005, 1)};
-  Matrix joint = Matrix::Zero(3 * T, 3 * T);
-  for (Eigen::Index a = 0; a < 3; ++a) joint.block(a * T, a * T, T, T) = parts[static_cast<std::size_t>(a)];
-  joint.block(0, T, T, T) = joint.block(T, 0, T, T) = 0.3 * smooth(T, 0.01, 2);
-  const Matrix3 R = rotation_from_rpy({0.3, -0.5, 1.0});
-  for (const auto& covariance : {parts, std::vector<Matrix>{joint}}) {
-    const HandSpread spread = hand_spread(covariance, R);
-    REQUIRE(spread.samples() == T);
-    const Matrix product = spread.factor * spread.factor.transpose();
-    for (Eigen::Index t = 0; t < T; ++t) {
-      for (Eigen::Index u = 0; u < T; ++u) {
-        Matrix3 block = Matrix3::Zero();
-        for (Eigen::Index a = 0; a < 3; ++a) {
-          for (Eigen::Index b = 0; b < 3; ++b) {
-            if (covariance.size() == 1) block(a, b) = joint(a * T + t, b * T + u);
-            if (covariance.size() == 3 && a == b) block(a, a) = parts[static_cast<std::size_t>(a)](t, u);
-          }
-        }
-        CHECK((product.block(3 * t, 3 * u, 3, 3) - R * block * R.transpose()).cwiseAbs().maxCoeff() < 1e-12);
-      }
-    }
-  }
-  const Vector share = Vector::LinSpaced(T, 0, 1);
-  const HandSpread shifted = hand_shift({0.01, 0.02, 0.03}, share);
-  const Matrix product = shifted.factor * shifted.factor.transpose();
-  CHECK(product(3 * 4 + 1, 3 * 2 + 1) == Approx(0.02 * 0.02 * 0.5));
-  CHECK(product(3 * 4 + 1, 3 * 2 + 2) == 0);
-  const HandSpread spread = hand_spread(parts, R), turned = hand_shift({0.01, 0.02, 0.03}, share, R);
-  const Matrix sum = together(spread, turned).factor * together(spread, turned).factor.transpose();
-  CHECK((sum - spread.factor * spread.factor.transpose() - turned.factor * turned.factor.transpose()).norm() < 1e-15);
-  const Matrix3 D = Vector3(0.01, 0.02, 0.03).asDiagonal();
-  CHECK((turned.factor.bottomRows(3) * turned.factor.bottomRows(3).transpose() - R * D * D * R.transpose()).norm() <
-        1e-15);
-  CHECK(refusal_of([&] { (void)together(spread, hand_shift({1, 1, 1}, share.head(2))); }).id == "hand_spread.shape");
-}
-
-TEST_CASE("covariances that are none are refused") {
-  Matrix bad = Matrix::Identity(6, 6);
-  bad(0, 1) = bad(1, 0) = 2;
-  const Matrix3 I = Matrix3::Identity();
-  CHECK(refusal_of([&] { (void)hand_spread({bad}, I); }).id == "hand_spread.not_positive");
-  CHECK(refusal_of([&] { (void)hand_spread({Matrix::Identity(4, 4)}, I); }).id == "hand_spread.shape");
-  CHECK(refusal_of([&] { (void)hand_spread({bad, bad}, I); }).id == "hand_spread.shape");
-  CHECK(refusal_of([&] { (void)hand_spread({Matrix::Constant(3, 3, NAN)}, I); }).id == "hand_spread.shape");
+TEST_CASE("joints and spread of different samples are refused") {
   const ArmClearance arm(ball(), {});
   CHECK(refusal_of([&] { (void)touching(arm, still(3), HandSpread{Matrix::Zero(6, 1)}); }).id == "touching.shape");
 }
