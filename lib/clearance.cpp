@@ -28,6 +28,11 @@ LinkClearance clearance(std::size_t link, std::size_t obstacle, const Separation
   return {static_cast<int>(link), static_cast<int>(obstacle), s.distance, s.point, s.normal};
 }
 
+/// How far the solid of a pair reaches along its normal, from the origin of the base.
+double reach_of_solid(const LinkClearance& pair, const Capsule& body) {
+  return pair.normal.dot(pair.point) - body.radius - pair.distance;
+}
+
 bool nearer(const LinkClearance& a, const LinkClearance& b) {
   return a.distance < b.distance;
 }
@@ -101,34 +106,63 @@ std::vector<LinkClearance> ArmClearance::pairs_of_arm_itself(const Joints& q) co
   return all;
 }
 
-Separation ArmClearance::part(const LinkClearance& pair, const Frames& frames) const {
-  const Capsule& body = bodies()[static_cast<std::size_t>(pair.link)];
-  const auto obstacle = static_cast<std::size_t>(pair.obstacle);
-  if (obstacle < solids_.size()) return separation(axis_of(body, frames), body.radius, solids_[obstacle]);
-  const Capsule& other = bodies()[obstacle - solids_.size()];
-  return separation(axis_of(body, frames), body.radius, axis_of(other, frames), other.radius);
-}
-
-/// A lower bound of the distance: how far apart the bodies are along the pair's normal, all of them being convex.
-double ArmClearance::at_least(const LinkClearance& pair, const Frames& frames) const {
+double ArmClearance::distance(const LinkClearance& pair, const Frames& frames) const {
   const Capsule& body = bodies()[static_cast<std::size_t>(pair.link)];
   const auto obstacle = static_cast<std::size_t>(pair.obstacle);
   const Segment axis = axis_of(body, frames);
-  const double near = std::min(pair.normal.dot(axis.from), pair.normal.dot(axis.to)) - body.radius;
-  if (obstacle < solids_.size()) return near - (pair.normal.dot(pair.point) - body.radius - pair.distance);
+  if (obstacle < solids_.size()) return separation(axis, body.radius, solids_[obstacle]).distance;
   const Capsule& other = bodies()[obstacle - solids_.size()];
-  const Segment line = axis_of(other, frames);
-  return near - (std::max(pair.normal.dot(line.from), pair.normal.dot(line.to)) + other.radius);
-}
-
-double ArmClearance::distance(const LinkClearance& pair, const Frames& frames) const {
-  return part(pair, frames).distance;
+  return separation(axis, body.radius, axis_of(other, frames), other.radius).distance;
 }
 
 bool ArmClearance::any_closer(const std::vector<LinkClearance>& pairs, double margin, const Frames& frames) const {
+  std::vector<Segment> axes;
+  axes.reserve(bodies().size());
+  for (const Capsule& body : bodies()) axes.push_back(axis_of(body, frames));
+  // The least of gaps().
+  const auto least_gap = [&](const LinkClearance& pair) {
+    const auto link = static_cast<std::size_t>(pair.link), obstacle = static_cast<std::size_t>(pair.obstacle);
+    const Capsule& body = bodies()[link];
+    const double near = std::min(pair.normal.dot(axes[link].from), pair.normal.dot(axes[link].to)) - body.radius;
+    if (obstacle < solids_.size()) return near - reach_of_solid(pair, body);
+    const Segment& line = axes[obstacle - solids_.size()];
+    return near - std::max(pair.normal.dot(line.from), pair.normal.dot(line.to)) -
+           bodies()[obstacle - solids_.size()].radius;
+  };
   return std::any_of(pairs.begin(), pairs.end(), [&](const LinkClearance& pair) {
-    return at_least(pair, frames) <= margin && part(pair, frames).distance <= margin;
+    return least_gap(pair) <= margin && distance(pair, frames) <= margin;
   });
+}
+
+std::vector<Gap> ArmClearance::gaps(const LinkClearance& pair, const Frames& frames) const {
+  const auto ends_of = [&](const Capsule& body) {
+    const Segment axis = axis_of(body, frames);
+    return body.from == body.to ? std::vector<Vector3>{axis.from} : std::vector<Vector3>{axis.from, axis.to};
+  };
+  // How a point that moves with a frame goes along the normal.
+  const auto slope = [&](const Vector3& point, int frame) {
+    Joints along = Joints::Zero();
+    for (int j = 0; j < frame; ++j) {
+      const Pose& joint = frames[static_cast<std::size_t>(j)];
+      along[j] = pair.normal.dot(joint.rotation.col(2).cross(point - joint.position));
+    }
+    return along;
+  };
+  const Capsule& body = bodies()[static_cast<std::size_t>(pair.link)];
+  const auto obstacle = static_cast<std::size_t>(pair.obstacle);
+  std::vector<Gap> gaps;
+  for (const Vector3& end : ends_of(body)) {
+    const Gap near{pair.normal.dot(end) - body.radius, slope(end, body.frame)};
+    if (obstacle < solids_.size()) {
+      gaps.push_back({near.distance - reach_of_solid(pair, body), near.slope});
+      continue;
+    }
+    const Capsule& other = bodies()[obstacle - solids_.size()];
+    for (const Vector3& far : ends_of(other)) {
+      gaps.push_back({near.distance - pair.normal.dot(far) - other.radius, near.slope - slope(far, other.frame)});
+    }
+  }
+  return gaps;
 }
 
 double ArmClearance::least(const Joints& q) const {
@@ -152,21 +186,6 @@ double ArmClearance::least_of_arm_itself(const Joints& q) const {
     least = std::min(least, separation(axis_of(a, frames), a.radius, axis_of(b, frames), b.radius).distance);
   }
   return least;
-}
-
-Joints ArmClearance::slope(const LinkClearance& pair, const Joints& q) const {
-  const Frames frames = joint_frames(robot_, q);
-  const int far = bodies()[static_cast<std::size_t>(pair.link)].frame;
-  // Joints that carry both links change nothing between them; the force line through the point is common to both.
-  const auto other = static_cast<std::size_t>(pair.obstacle) - solids_.size();
-  const bool own = static_cast<std::size_t>(pair.obstacle) >= solids_.size();
-  const int near = own ? bodies()[other].frame : 0;
-  Joints slope = Joints::Zero();
-  for (int j = near; j < far; ++j) {
-    const Pose& frame = frames[static_cast<std::size_t>(j)];
-    slope[j] = pair.normal.dot(frame.rotation.col(2).cross(pair.point - frame.position));
-  }
-  return slope;
 }
 
 double ArmClearance::furthest_motion(const Joints& q, const Joints& range) const {

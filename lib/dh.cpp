@@ -10,6 +10,13 @@
 #include "lfdtools/error.hpp"
 
 namespace lfd {
+namespace {
+
+constexpr double right_angle = std::numbers::pi / 2;
+// std::cos of it, which is not quite it.
+constexpr double cosine_of_right_angle = 6.123233995736766e-17;
+
+}  // namespace
 
 void check(const Robot& robot) {
   bool finite = robot.limits.position.allFinite() && robot.limits.velocity.allFinite() &&
@@ -61,7 +68,16 @@ Pose frame_in_base(const Robot& robot, const std::string& name) {
 
 Pose dh_transform(const DhRow& row, double q) {
   const double angle = q + row.theta;
-  const double s = std::sin(angle), c = std::cos(angle), sa = std::sin(row.alpha), ca = std::cos(row.alpha);
+  const double s = std::sin(angle), c = std::cos(angle);
+  // Most twists are right angles or none, and their sines take as long as those of the joint.
+  double sa = 0.0, ca = 1.0;
+  if (std::abs(row.alpha) == right_angle) {
+    sa = std::copysign(1.0, row.alpha);
+    ca = cosine_of_right_angle;
+  } else if (row.alpha != 0) {
+    sa = std::sin(row.alpha);
+    ca = std::cos(row.alpha);
+  }
   Pose T;
   T.rotation << c, -s * ca, s * sa, s, c * ca, -c * sa, 0.0, sa, ca;
   T.position << row.a * c, row.a * s, row.d;

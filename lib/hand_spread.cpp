@@ -53,7 +53,7 @@ Vector share_of_way(const Samples& positions) {
   for (Eigen::Index k = 1; k < way.size(); ++k) {
     way[k] = way[k - 1] + (positions.row(k) - positions.row(k - 1)).norm();
   }
-  const double whole = way[way.size() - 1];
+  const double whole = way.size() > 0 ? way[way.size() - 1] : 0.0;
   return whole > 0 ? Vector(way / whole) : Vector(Vector::Ones(way.size()));
 }
 

@@ -20,7 +20,9 @@ Separation axis_to_point(const Segment& axis, const Vector3& centre) {
 Separation axis_to_axis(const Segment& a, const Segment& b) {
   const Vector3 u = a.to - a.from, v = b.to - b.from, between = b.from - a.from;
   const Vector3 across = u.cross(v);
-  const double square = across.squaredNorm();
+  // Of lines that are parallel, but for rounding, the cross product is no direction.
+  const bool parallel = across.squaredNorm() <= 1e-24 * u.squaredNorm() * v.squaredNorm();
+  const double square = parallel ? 0.0 : across.squaredNorm();
   // Where the two lines are nearest; the cross product keeps its digits where they are nearly parallel.
   double s = square > 0 ? share(between.cross(v).dot(across) / square) : 0.0;
   const double t = nearest_to_origin(Vector3(between - s * u), v);

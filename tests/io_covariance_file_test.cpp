@@ -51,6 +51,8 @@ TEST_CASE("a covariance is read as it was written, one matrix a signal or one of
     REQUIRE(back.goal_factor == file.goal_factor);
     if (together) {
       require_refused(changed(text, "[0.1,0.1],", ""), read_covariance, "json.wrong_length", "/goal_factor");
+      require_refused(changed(text, "[0.1,0.1],", "[0.8,0.7],"), read_covariance, "covariance.goal_factor",
+                      "/goal_factor/0");
     } else {
       require_refused(changed(text, "\"t\":", "\"goal_factor\":[[1,1]],\"t\":"), read_covariance,
                       "covariance.goal_factor", "/goal_factor");

@@ -20,6 +20,12 @@ struct LinkClearance {
   Vector3 normal = Vector3::UnitZ();  ///< unit, along which the distance grows as `point` moves
 };
 
+/// How far two bodies are apart along a direction that stays as it is.
+struct Gap {
+  double distance = 0.0;          ///< [m]
+  Joints slope = Joints::Zero();  ///< its derivative by the joints [m/rad]
+};
+
 /// A tool as one more link: a capsule from the flange to the tool tip, called "tool".
 /// @param tool  pose of the tip in the flange frame   @param radius  [m]
 [[nodiscard]] Capsule tool_capsule(const Pose& tool, double radius);
@@ -50,29 +56,27 @@ class ArmClearance {
   /// Every pair of links that is not left aside; `link` is the one further along the arm.
   [[nodiscard]] std::vector<LinkClearance> pairs_of_arm_itself(const Joints& q) const;
 
-  /// Distance of the same two bodies at other joints [m]. @param frames  as joint_frames gives them
-  [[nodiscard]] double distance(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
   /// Whether any of the pairs is no further apart than `margin`. They may have been measured at other joints, best near
   /// these: the plane that parted two bodies there shows of most, without their distance, that they are further.
   /// @param margin  [m]   @param frames  as joint_frames gives them
   [[nodiscard]] bool any_closer(const std::vector<LinkClearance>& pairs, double margin,
                                 const std::array<Pose, 7>& frames) const;
+  /// The gaps of a pair along its normal: of each end of the link's axis from the solid, or from each end of the other
+  /// link. All bodies being convex, none of the distances at other joints is under the least gap there; where the pair
+  /// was measured the least gap is its distance.
+  [[nodiscard]] std::vector<Gap> gaps(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
 
   /// Least distance of all pairs(q); infinite without solids.
   [[nodiscard]] double least(const Joints& q) const;
   /// Least distance of all pairs_of_arm_itself(q).
   [[nodiscard]] double least_of_arm_itself(const Joints& q) const;
 
-  /// Derivative of a pair's distance by the joints [m/rad], where the distance has one.
-  [[nodiscard]] Joints slope(const LinkClearance& pair, const Joints& q) const;
-
   /// No point of the arm moves further than this while each joint moves by at most `range` from q [m].
   /// @param range  [rad], not negative
   [[nodiscard]] double furthest_motion(const Joints& q, const Joints& range) const;
 
  private:
-  [[nodiscard]] Separation part(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
-  [[nodiscard]] double at_least(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
+  [[nodiscard]] double distance(const LinkClearance& pair, const std::array<Pose, 7>& frames) const;
   [[nodiscard]] bool counts(const Capsule& body, std::size_t solid) const {
     return body.frame > 1 || (body.frame == 1 && !stood_on_[solid]);
   }

@@ -26,20 +26,20 @@ struct Chance {
 struct Touching {
   std::vector<Chance> samples;  ///< T, of each sample by itself
   Chance path;                  ///< of any sample
+  Chance out_of_reach;          ///< that at any sample where something might be touched the hand is out of reach
 };
 
 /// Probability that the arm touches, by sample and for the samples together: paths of the hand are drawn from the
-/// spread, joints follow them from where they are (Newton's method through the Jacobian, orientation kept), and full
-/// distances tell which touch.
+/// spread, joints follow them from where they are (Newton's method through the Jacobian, near singularities the
+/// inverse kinematics; orientation kept), and full distances tell which touch.
 ///
-/// So that what is rare is seen too, most paths are drawn where a pair of bodies touches to first order, where
-/// distance + slope J^-1 dx <= margin, each such half space in proportion to its probability, and a tenth from
-/// the spread itself; a path counts by the ratio of the densities (Karp and Luby's union of events 1983 as the proposal
-/// of importance sampling; Owen and Zhou 2000 for the share drawn plainly). What is told is then free of the first
-/// order's error, which only costs draws. The way between samples is no part of it, nor is whether the joints' range
-/// allows a drawn path; where the hand would be out of reach nothing touches.
+/// So that what is rare is seen too, most paths are drawn where a link touches to first order, where
+/// gap + slope J^-1 dx <= margin for an end of its axis, and where the hand is three times as far off as it may be at
+/// one sample; a path counts by the ratio of the densities (PathProposal). So the first order decides where to look,
+/// not what is told. The way between samples is no part of it, nor is whether the joints' range allows a drawn path;
+/// where the hand is out of reach nothing touches.
 /// @param joints  T x 6 [rad]   @param tool  pose of the hand, whose error is told, in the flange frame
-/// @throws DataError [touching.shape] if the samples do not agree in number
+/// @throws DataError [touching.shape] if the samples do not agree in number, [touching.not_finite]
 [[nodiscard]] Touching touching(const ArmClearance& arm, const Samples& joints, const HandSpread& spread,
                                 const Pose& tool = {}, const TouchingOptions& options = {});
 

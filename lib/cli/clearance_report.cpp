@@ -26,6 +26,8 @@ constexpr double rounding = 1e-6;
 constexpr double same_path = 1e-3;
 // Where the way between samples comes this much closer than they do, their probability misses it [m].
 constexpr double much_closer = 1e-3;
+// A share of paths out of reach that is worth a word.
+constexpr double often_lost = 0.01;
 
 const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> position_names = {"x", "y", "z"};
@@ -331,6 +333,13 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
       }
       run.detail("clearance.probability", text);
       run.figure("path_probability", chances.path.probability);
+      if (chances.out_of_reach.probability > often_lost) {
+        run.messages().warning("clearance.out_of_reach",
+                               fmt::format("{}where the hand may be off, {:.2g} of the paths leave the arm's reach: these "
+                                           "count as touching nothing",
+                                           prefix_of(recording.demonstration.labels), chances.out_of_reach.probability),
+                               recording.place(0));
+      }
     }
     CsvWriter& writer = table.begin(recording.demonstration.labels);
     for (Eigen::Index k = 0; k < path.samples(); ++k) {

@@ -73,6 +73,13 @@ CovarianceFile read_covariance(const JsonDocument& document) {
   if (const auto goal = root.find("goal_factor")) {
     if (file.covariance.size() > 1) goal->fail("covariance.goal_factor", "a goal moves all signals at once");
     file.goal_factor = goal->matrix(D * T, D);
+    const Vector own = file.covariance.front().diagonal(), of_goal = file.goal_factor.rowwise().squaredNorm();
+    for (Eigen::Index i = 0; i < D * T; ++i) {
+      if (of_goal[i] <= (1 + 1e-9) * own[i] + 1e-9 * own.maxCoeff()) continue;
+      goal->at(static_cast<std::size_t>(i))
+          .fail("covariance.goal_factor",
+                fmt::format("a variance of {:.3g} by the goal, of {:.3g} in all", of_goal[i], own[i]));
+    }
   }
   return file;
 }

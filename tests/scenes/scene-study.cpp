@@ -125,11 +125,11 @@ class Study {
     return touching(bodies, joints, spread, {}, {.self = true}).path.probability;
   }
 
-  /// What becomes of one of the paths that `told`, the probability of touching, speaks of.
+  /// What becomes, at its samples, of one of the paths that `told`, the probability of touching, speaks of.
   void judge_draw(const std::string& method, const Hole& hole, const Samples& path, double told) {
     Verdict verdict;
     if (const auto joints = joints_of(path)) {
-      verdict.clearance = least_distance(fcl_, *joints);
+      verdict.clearance = least_distance(fcl_, *joints, 1);
       verdict.outcome = verdict.clearance > 0 ? Outcome::clear : Outcome::collided;
     } else {
       verdict.reason = "unreachable";

@@ -104,8 +104,7 @@ double FclScene::distance(const Joints& q) const {
   return least;
 }
 
-double least_distance(const FclScene& scene, const Samples& joints) {
-  constexpr int between = 2;
+double least_distance(const FclScene& scene, const Samples& joints, int between) {
   double least = scene.distance(joints.row(0).transpose());
   for (Eigen::Index t = 1; t < joints.rows(); ++t) {
     for (int k = 1; k <= between; ++k) {

@@ -47,6 +47,7 @@ class FclScene {
                             const Samples& path, const Joints& demonstrated_start, int branch, double seconds);
 
 /// FCL's verdict on a joint path alone: its least distance [m].
-[[nodiscard]] double least_distance(const FclScene& scene, const Samples& joints);
+/// @param between  looks at so many joints an interval, the last of which is the next sample
+[[nodiscard]] double least_distance(const FclScene& scene, const Samples& joints, int between = 2);
 
 }  // namespace lfd::scenes
