@@ -6,16 +6,11 @@
 
 #include "judge_fixture.hpp"
 #include "lfdtools/metrics.hpp"
-#include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
 
 using namespace lfd;
 
 namespace {
-
-Matrix drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, columns, [&] { return random.normal(); });
-}
 
 /// The evidence by its definition, without singular vectors.
 double evidence(const Matrix& X, const Matrix& Y, double penalty) {
@@ -30,8 +25,8 @@ double evidence(const Matrix& X, const Matrix& Y, double penalty) {
 }  // namespace
 
 TEST_CASE("least squares solves the normal equations; where rows leave it open, with the smallest coefficients") {
-  const Matrix X = drawn(20, 3, 1);
-  const Matrix Y = drawn(20, 4, 2);
+  const Matrix X = random_matrix(20, 3, 1);
+  const Matrix Y = random_matrix(20, 4, 2);
   Matrix H(20, 4);
   H << Vector::Ones(20), X;
   CHECK((fit_affine(X, Y) - (H.transpose() * H).inverse() * H.transpose() * Y).norm() < 1e-12);
@@ -41,8 +36,8 @@ TEST_CASE("least squares solves the normal equations; where rows leave it open, 
 }
 
 TEST_CASE("the prior's slopes are ridge regression at a penalty of greatest evidence") {
-  const Matrix X = drawn(15, 3, 3);
-  const Matrix Y = X * drawn(3, 5, 4) + 2 * drawn(15, 5, 5);
+  const Matrix X = random_matrix(15, 3, 3);
+  const Matrix Y = X * random_matrix(3, 5, 4) + 2 * random_matrix(15, 5, 5);
   const AffinePosterior fit = fit_affine_prior(X, Y);
   const Matrix A = X.rowwise() - X.colwise().mean();
   const Matrix ridge = (A.transpose() * A + fit.penalty * Matrix::Identity(3, 3)).inverse() * A.transpose() *
@@ -80,7 +75,7 @@ TEST_CASE("a map that is affine is found by all four, whatever way they go") {
 }
 
 TEST_CASE("inputs or outputs that do not vary give no slope") {
-  const AffinePosterior same = fit_affine_prior(Matrix::Ones(4, 2), drawn(4, 3, 6));
+  const AffinePosterior same = fit_affine_prior(Matrix::Ones(4, 2), random_matrix(4, 3, 6));
   CHECK(same.slopes.norm() == 0);
-  CHECK(fit_affine_prior(drawn(4, 2, 7), Matrix::Ones(4, 3))(Vector::Zero(2)) == Vector::Ones(3));
+  CHECK(fit_affine_prior(random_matrix(4, 2, 7), Matrix::Ones(4, 3))(Vector::Zero(2)) == Vector::Ones(3));
 }

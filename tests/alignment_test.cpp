@@ -4,15 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <sstream>
 
 #include "lfdtools/dtw.hpp"
-#include "lfdtools/error.hpp"
 #include "lfdtools/interpolation.hpp"
 #include "lfdtools/random.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using Eigen::Index;
@@ -121,15 +120,6 @@ std::map<std::string, std::vector<Trajectory>> recording(const std::string& name
     }
   }
   return out;
-}
-
-std::string id_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "none";
 }
 
 const std::vector<double> durations = {3.0, 2.4, 3.6, 2.8};
@@ -320,21 +310,23 @@ TEST_CASE("idle ends are cut in spite of tremor, and what is cut is said") {
 TEST_CASE("what cannot be aligned is refused by name") {
   const auto demos = reaches();
   AlignmentOptions options;
-  CHECK(id_of([&] { (void)align({}); }) == "alignment.empty");
+  CHECK(refusal_of([&] { (void)align({}); }).id == "alignment.empty");
   options.samples = 1;
-  CHECK(id_of([&] { (void)align(demos, options); }) == "alignment.samples");
+  CHECK(refusal_of([&] { (void)align(demos, options); }).id == "alignment.samples");
   options = {};
   options.reference = Reference::chosen;
   options.chosen = 4;
-  CHECK(id_of([&] { (void)align(demos, options); }) == "alignment.chosen");
+  CHECK(refusal_of([&] { (void)align(demos, options); }).id == "alignment.chosen");
   options = {};
   options.trim = 1.0;
-  CHECK(id_of([&] { (void)align(demos, options); }) == "alignment.trim");
+  CHECK(refusal_of([&] { (void)align(demos, options); }).id == "alignment.trim");
   options = {};
   options.window = 0.0;
-  CHECK(id_of([&] { (void)align(demos, options); }) == "dtw.window");
-  CHECK(id_of([&] { (void)align({demos[0], {linspace(0, 1, 3), Samples::Zero(3, 2)}}); }) == "alignment.dimensions");
-  CHECK(id_of([&] { (void)trim({linspace(0, 1, 9), Samples::Zero(9, 2)}); }) == "alignment.no_motion");
+  CHECK(refusal_of([&] { (void)align(demos, options); }).id == "dtw.window");
+  CHECK(refusal_of([&] {
+          (void)align({demos[0], {linspace(0, 1, 3), Samples::Zero(3, 2)}});
+        }).id == "alignment.dimensions");
+  CHECK(refusal_of([&] { (void)trim({linspace(0, 1, 9), Samples::Zero(9, 2)}); }).id == "alignment.no_motion");
   CHECK(align({{linspace(0, 1, 9), Samples::Zero(9, 2)}, {linspace(0, 2, 5), Samples::Zero(5, 2)}}).aligned.size() ==
         2);
   CHECK(

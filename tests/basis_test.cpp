@@ -3,21 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/trajectory.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
-
-namespace {
-std::string refusal(const auto& action) {
-  try {
-    action();
-  } catch (const DataError& error) {
-    return error.id();
-  }
-  return "none";
-}
-}  // namespace
 
 TEST_CASE("centres are equally spaced in time, widths are 0.8 of the distance to the next centre") {
   const CanonicalSystem canonical;
@@ -90,13 +79,15 @@ TEST_CASE("the time resolution shrinks with the number of functions and bounds t
 }
 
 TEST_CASE("a basis that cannot be used is refused") {
-  CHECK(refusal([] { (void)make_basis(1); }) == "dmp.basis");
-  CHECK(refusal([] { (void)make_basis(15, CanonicalSystem{0.0}); }) == "dmp.alpha_x");
-  CHECK(refusal([] { check(Basis{Vector::Ones(2), Vector::Ones(3)}); }) == "dmp.basis");
-  CHECK(refusal([] { check(Basis{}); }) == "dmp.basis");
-  CHECK(refusal([] { check(Basis{Vector::Ones(2), Vector::Zero(2)}); }) == "dmp.basis");
-  CHECK(refusal([] { check(Basis{Vector::Ones(2), Vector::Constant(2, std::nan(""))}); }) == "dmp.basis");
-  CHECK(refusal([] { check(make_basis(15)); }) == "none");
+  CHECK(refused_as(Fault::data, [] { (void)make_basis(1); }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] { (void)make_basis(15, CanonicalSystem{0.0}); }) == "dmp.alpha_x");
+  CHECK(refused_as(Fault::data, [] { check(Basis{Vector::Ones(2), Vector::Ones(3)}); }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] { check(Basis{}); }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] { check(Basis{Vector::Ones(2), Vector::Zero(2)}); }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] {
+          check(Basis{Vector::Ones(2), Vector::Constant(2, std::nan(""))});
+        }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] { check(make_basis(15)); }) == "");
   // Centres that fall on one another: a phase that is zero long before tau.
-  CHECK(refusal([] { (void)make_basis(15, CanonicalSystem{1e5}); }) == "dmp.basis");
+  CHECK(refused_as(Fault::data, [] { (void)make_basis(15, CanonicalSystem{1e5}); }) == "dmp.basis");
 }

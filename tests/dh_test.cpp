@@ -9,6 +9,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/ur_geometry.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -121,14 +122,7 @@ TEST_CASE("angles are wrapped to (-pi, pi]") {
 }
 
 TEST_CASE("robots that cannot be are refused by name") {
-  const auto id_of = [](const Robot& robot) {
-    try {
-      check(robot);
-    } catch (const ConfigError& error) {
-      return error.id();
-    }
-    return std::string();
-  };
+  const auto id_of = [](const Robot& robot) { return refused_as(Fault::config, [&] { check(robot); }); };
   CHECK(id_of(nominal_ur10e()).empty());
   Robot robot = nominal_ur10();
   robot.dh[2].alpha = std::numeric_limits<double>::quiet_NaN();

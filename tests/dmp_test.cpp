@@ -4,22 +4,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/trajectory.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
 namespace {
-
-std::string refusal(const auto& action) {
-  try {
-    action();
-  } catch (const DataError& error) {
-    return error.id();
-  }
-  return "none";
-}
 
 Dmp random_dmp(const DmpSettings& settings, double tau, Eigen::Index D, std::uint64_t seed, double size = 3000) {
   Random random(seed);
@@ -240,7 +231,7 @@ TEST_CASE("the settling time is the first of the grid after which everything sta
   CHECK(settle_time(still) == still.tau);
   Dmp endless = dmp;
   endless.settings.alpha_x = 1e-3;
-  CHECK(refusal([&] { (void)settle_time(endless); }) == "dmp.does_not_settle");
+  CHECK(refused_as(Fault::data, [&] { (void)settle_time(endless); }) == "dmp.does_not_settle");
 }
 
 TEST_CASE("primitives and times that cannot be used are refused") {
@@ -249,9 +240,9 @@ TEST_CASE("primitives and times that cannot be used are refused") {
   const auto refused = [&](const auto& change) {
     Dmp bad = good;
     change(bad);
-    return refusal([&] { (void)rollout(bad, t); });
+    return refused_as(Fault::data, [&] { (void)rollout(bad, t); });
   };
-  CHECK(refused([](Dmp&) {}) == "none");
+  CHECK(refused([](Dmp&) {}) == "");
   CHECK(refused([](Dmp& d) { d.tau = 0; }) == "dmp.duration");
   CHECK(refused([](Dmp& d) { d.tau = std::nan(""); }) == "dmp.duration");
   CHECK(refused([](Dmp& d) { d.weights(0, 0) = std::nan(""); }) == "dmp.not_finite");
@@ -260,8 +251,8 @@ TEST_CASE("primitives and times that cannot be used are refused") {
   CHECK(refused([](Dmp& d) { d.settings.widths[1] = 0; }) == "dmp.basis");
   CHECK(refused([](Dmp& d) { d.settings.beta_z = -1; }) == "dmp.spring");
   CHECK(refused([](Dmp& d) { d.settings.alpha_x = 0; }) == "dmp.alpha_x");
-  CHECK(refusal([&] { (void)rollout(good, -t); }) == "dmp.times");
-  CHECK(refusal([&] { (void)rollout(good, t.reverse()); }) == "dmp.times");
-  CHECK(refusal([&] { (void)rollout(good, Vector::Constant(1, INFINITY)); }) == "dmp.times");
+  CHECK(refused_as(Fault::data, [&] { (void)rollout(good, -t); }) == "dmp.times");
+  CHECK(refused_as(Fault::data, [&] { (void)rollout(good, t.reverse()); }) == "dmp.times");
+  CHECK(refused_as(Fault::data, [&] { (void)rollout(good, Vector::Constant(1, INFINITY)); }) == "dmp.times");
   CHECK(rollout(good, Vector()).positions.rows() == 0);
 }

@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using Eigen::Index;
@@ -72,15 +72,6 @@ Samples column(std::initializer_list<double> values) {
   Samples y(static_cast<Index>(values.size()), 1);
   std::copy(values.begin(), values.end(), y.data());
   return y;
-}
-
-std::string id_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "none";
 }
 
 }  // namespace
@@ -155,11 +146,11 @@ TEST_CASE("a pause costs nothing and its samples are matched with one") {
 TEST_CASE("what cannot be compared is refused by name") {
   const Samples good = column({0, 1});
   const Samples nan = column({0, std::numeric_limits<double>::quiet_NaN()});
-  CHECK(id_of([&] { (void)dtw_cost(Samples(0, 1), good); }) == "dtw.empty");
-  CHECK(id_of([&] { (void)dtw(good, Samples::Zero(3, 2)); }) == "dtw.dimensions");
-  CHECK(id_of([&] { (void)dtw_cost(good, nan); }) == "dtw.not_finite");
-  CHECK(id_of([&] { (void)dtw(good, column({0, 1e200})); }) == "dtw.overflow");
-  CHECK(id_of([&] { (void)dtw_cost(good, good, {0.0}); }) == "dtw.window");
-  CHECK(id_of([&] { (void)dtw_cost(good, good, {1.01}); }) == "dtw.window");
-  CHECK(id_of([&] { (void)dtw_cost(good, good, {std::nan("")}); }) == "dtw.window");
+  CHECK(refusal_of([&] { (void)dtw_cost(Samples(0, 1), good); }).id == "dtw.empty");
+  CHECK(refusal_of([&] { (void)dtw(good, Samples::Zero(3, 2)); }).id == "dtw.dimensions");
+  CHECK(refusal_of([&] { (void)dtw_cost(good, nan); }).id == "dtw.not_finite");
+  CHECK(refusal_of([&] { (void)dtw(good, column({0, 1e200})); }).id == "dtw.overflow");
+  CHECK(refusal_of([&] { (void)dtw_cost(good, good, {0.0}); }).id == "dtw.window");
+  CHECK(refusal_of([&] { (void)dtw_cost(good, good, {1.01}); }).id == "dtw.window");
+  CHECK(refusal_of([&] { (void)dtw_cost(good, good, {std::nan("")}); }).id == "dtw.window");
 }

@@ -5,18 +5,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/gaussian.hpp"
 #include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
 namespace {
-
-Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 Matrix random_positive(Eigen::Index d, std::uint64_t seed) {
   const Matrix B = random_matrix(d, d + 3, seed);
@@ -199,13 +195,10 @@ TEST_CASE("a free Omega is at its maximum, and refused where it has none") {
     CHECK(-log_matrix_normal(Y, dense.K, other) > value);
   }
 
-  const auto id_of = [&](const Matrix& outputs, MeanType mean) -> std::string {
-    try {
-      Evidence refused(X, outputs, kernel, {OmegaRule::ml, mean, Matrix::Ones(1, 1), 0, {}});
-    } catch (const DataError& error) {
-      return error.id();
-    }
-    return "";
+  const auto id_of = [&](const Matrix& outputs, MeanType mean) {
+    return refused_as(Fault::data, [&] {
+      Evidence(X, outputs, kernel, {OmegaRule::ml, mean, Matrix::Ones(1, 1), 0, {}});
+    });
   };
   CHECK(id_of(random_matrix(8, 7, 63), MeanType::zero) == "");
   CHECK(id_of(random_matrix(8, 8, 63), MeanType::zero) == "mvgp.omega_unbounded");

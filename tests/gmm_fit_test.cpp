@@ -6,47 +6,25 @@
 #include <numeric>
 #include <string>
 
+#include "gmm_fixture.hpp"
 #include "lfdtools/em_run.hpp"
 #include "lfdtools/error.hpp"
 #include "lfdtools/gmm.hpp"
 #include "lfdtools/random.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using Eigen::Index;
 
 namespace {
 
-/// Noisy repetitions of a curve, time first.
-Samples demonstrations(int repetitions, std::uint64_t seed) {
-  Random random(seed);
-  Samples x(repetitions * 100, 4);
-  for (int m = 0; m < repetitions; ++m) {
-    const double shift = 0.02 * random.normal();
-    for (int i = 0; i < 100; ++i) {
-      const double t = i / 99.0;
-      x.row(m * 100 + i) << 3.0 * t, t * t + shift + 0.002 * random.normal(),
-          std::sin(4.0 * t) + shift + 0.002 * random.normal(), 0.1 * std::cos(7.0 * t) + 0.002 * random.normal();
-    }
-  }
-  return x;
-}
-
 std::string id_of(const Samples& x, const EmOptions& options) {
-  try {
-    (void)fit_gmm(x, options);
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "";
+  return refusal_of([&] { (void)fit_gmm(x, options); }).id;
 }
 
 std::string id_of(const Gmm& gmm) {
-  try {
-    check(gmm);
-  } catch (const Error& error) {
-    return error.id() + " " + error.place().pointer;
-  }
-  return "";
+  const Refusal refusal = refusal_of([&] { check(gmm); });
+  return refusal.id.empty() ? "" : refusal.id + " " + refusal.place.pointer;
 }
 
 bool same_bytes(const Gmm& a, const Gmm& b) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gmm_fixture.hpp"
 #include "lfdtools/error.hpp"
-#include "lfdtools/random.hpp"
 
 using namespace lfd;
 using Eigen::Index;
@@ -38,21 +38,6 @@ const int irises[600] = {
 
 Samples iris() {
   return Eigen::Map<const Eigen::Matrix<int, 150, 4, Eigen::RowMajor>>(irises).cast<double>() / 10.0;
-}
-
-/// Noisy repetitions of a curve, time first.
-Samples demonstrations(int repetitions, std::uint64_t seed) {
-  Random random(seed);
-  Samples x(repetitions * 100, 4);
-  for (int m = 0; m < repetitions; ++m) {
-    const double shift = 0.02 * random.normal();
-    for (int i = 0; i < 100; ++i) {
-      const double t = i / 99.0;
-      x.row(m * 100 + i) << 3.0 * t, t * t + shift + 0.002 * random.normal(),
-          std::sin(4.0 * t) + shift + 0.002 * random.normal(), 0.1 * std::cos(7.0 * t) + 0.002 * random.normal();
-    }
-  }
-  return x;
 }
 
 /// ln p(x) by the definition: inverse and determinant by Gauss's elimination in extended precision.

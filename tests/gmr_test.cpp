@@ -9,6 +9,7 @@
 #include "lfdtools/gaussian.hpp"
 #include "lfdtools/lanes.hpp"
 #include "lfdtools/random.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using Eigen::Index;
@@ -62,12 +63,7 @@ Plain plain_regression(const Gmm& gmm, double t) {
 }
 
 std::string id_of(const Gmm& gmm, const Vector& times) {
-  try {
-    (void)gmr(gmm, times);
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "";
+  return refusal_of([&] { (void)gmr(gmm, times); }).id;
 }
 
 }  // namespace

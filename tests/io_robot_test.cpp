@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "arm_fixture.hpp"
-#include "io_fixture.hpp"
+#include "io_model_fixture.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
 #include "lfdtools/joint_chain.hpp"
@@ -31,13 +31,6 @@ const std::string calibration = R"(kinematics:
   wrist_3: {x: -2.2e-05, y: 0.116603, z: 3.9e-05, roll: 1.570461, pitch: 3.141592653589793, yaw: -3.141571}
   hash: calib_1234567890
 )";
-
-#ifdef LFD_WITH_YAML
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  text.replace(text.find(from), from.size(), to);
-  return text;
-}
-#endif
 
 }  // namespace
 
@@ -126,21 +119,21 @@ TEST_CASE("a calibration that says too little, too much or nonsense is refused w
     const std::string file = folder.write("bad.yaml", text);
     return refusal_of([&] { (void)load_robot(file, captured.messages, strict); });
   };
-  const Refusal text = refusal(with(calibration, "0.18093", "high"));
+  const Refusal text = refusal(changed(calibration, "0.18093", "high"));
   CHECK(text.fault == Fault::config);
   CHECK(text.id == "yaml.wrong_type");
   CHECK(text.place.pointer == "/kinematics/shoulder/z");
   CHECK(text.place.line == 2);
-  CHECK(refusal(with(calibration, "0.18093", ".nan")).id == "yaml.wrong_type");
-  CHECK(refusal(with(calibration, "0.18093", "[1]")).id == "yaml.wrong_type");
-  const Refusal missing = refusal(with(calibration, "    yaw: 7e-06\n", ""));
+  CHECK(refusal(changed(calibration, "0.18093", ".nan")).id == "yaml.wrong_type");
+  CHECK(refusal(changed(calibration, "0.18093", "[1]")).id == "yaml.wrong_type");
+  const Refusal missing = refusal(changed(calibration, "    yaw: 7e-06\n", ""));
   CHECK(missing.id == "yaml.missing_key");
   CHECK(missing.place.pointer == "/kinematics/wrist_1");
-  CHECK(refusal(with(calibration, "    yaw: 7e-06\n", "    yaw: 7e-06\n    x: 1\n")).id == "yaml.duplicate_key");
-  CHECK(refusal(with(calibration, "hash", "hush"), true).id == "yaml.unknown_key");
-  CHECK(refusal(with(calibration, "hash", "hush")).id.empty());
-  CHECK(refusal(with(calibration, "-0.612983", "-0.9")).id == "robot.unknown_model");
-  CHECK(refusal(with(calibration, "1.570312", "0.4")).id == "ur10.not_a_ur");
+  CHECK(refusal(changed(calibration, "    yaw: 7e-06\n", "    yaw: 7e-06\n    x: 1\n")).id == "yaml.duplicate_key");
+  CHECK(refusal(changed(calibration, "hash", "hush"), true).id == "yaml.unknown_key");
+  CHECK(refusal(changed(calibration, "hash", "hush")).id.empty());
+  CHECK(refusal(changed(calibration, "-0.612983", "-0.9")).id == "robot.unknown_model");
+  CHECK(refusal(changed(calibration, "1.570312", "0.4")).id == "ur10.not_a_ur");
   CHECK(refusal("").id == "yaml.wrong_type");
   CHECK(refusal("kinematics: 3\n").id == "yaml.wrong_type");
   CHECK(refusal("kinematics: {shoulder: [\n").id == "yaml.syntax");

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "io_fixture.hpp"
+#include "io_model_fixture.hpp"
 #include "lfdtools/calibration.hpp"
 #include "lfdtools/dmp_fit.hpp"
 #include "lfdtools/io/skill_file.hpp"
@@ -28,31 +28,9 @@ SkillFile trained(const SkillOptions& options) {
   return file;
 }
 
-std::string text_of(const SkillFile& file, const ScratchFolder& folder) {
-  Output out(folder.file("skill.json"));
-  write_skill(file, out);
-  out.finish();
-  return content(folder.file("skill.json"));
-}
-
-SkillFile read_text(const std::string& text) {
-  CapturedMessages captured;
-  JsonOptions options;
-  options.strict = true;
-  const JsonDocument document(text, "skill.json", captured.messages, options);
-  return read_skill(document);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
-
 }  // namespace
 
 TEST_CASE("a skill that is written and read again predicts the same and writes the same bytes") {
-  ScratchFolder folder;
   for (const bool paper : {false, true}) {
     for (const auto structure : {SkillStructure::axis, SkillStructure::full, SkillStructure::joint}) {
       SkillOptions options;
@@ -60,9 +38,9 @@ TEST_CASE("a skill that is written and read again predicts the same and writes t
       options.structure = structure;
       if (!paper && structure == SkillStructure::full) options.mean = SkillMean::constant;
       const SkillFile file = trained(options);
-      const std::string text = text_of(file, folder);
-      const SkillFile back = read_text(text);
-      CHECK(text_of(back, folder) == text);
+      const std::string text = text_of(file, write_skill);
+      const SkillFile back = read_skill(document(text));
+      CHECK(text_of(back, write_skill) == text);
       Vector change(2);
       change << 0.25, 0.3;
       CHECK(SkillPredictor(back.skill).weights(change).mean == SkillPredictor(file.skill).weights(change).mean);
@@ -76,14 +54,11 @@ TEST_CASE("a skill that is written and read again predicts the same and writes t
 }
 
 TEST_CASE("what does not fit together is refused with its place") {
-  ScratchFolder folder;
-  const std::string text = text_of(trained({}), folder);
+  const std::string text = text_of(trained({}), write_skill);
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& id,
                            const std::string& pointer) {
-    const Refusal refusal = refusal_of([&] { (void)read_text(replaced(text, from, to)); });
     INFO(from << " -> " << to);
-    CHECK(refusal.id == id);
-    CHECK(refusal.place.pointer == pointer);
+    require_refused(changed(text, from, to), read_skill, id, pointer);
   };
   refused(R"("scaling":"none")", R"("scaling":"some")", "json.out_of_range", "/dmp/scaling");
   refused(R"("outputs":["x"])", R"("outputs":["z"])", "skill.unknown_signal", "/models/0/outputs/0");

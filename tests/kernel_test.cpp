@@ -4,16 +4,12 @@
 #include <cmath>
 
 #include "lfdtools/error.hpp"
-#include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
 namespace {
-
-Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 /// The documented formula, written once more without vectors.
 double by_definition(const KernelTerm& term, const Vector& a, const Vector& b) {
@@ -155,14 +151,7 @@ TEST_CASE("hyperparameters go out and come back in the documented order") {
 }
 
 TEST_CASE("a kernel that cannot be used is refused by name") {
-  const auto id_of = [](const Kernel& kernel) -> std::string {
-    try {
-      check_kernel(kernel, 2);
-    } catch (const DataError& error) {
-      return error.id();
-    }
-    return "";
-  };
+  const auto id_of = [](const Kernel& kernel) { return refused_as(Fault::data, [&] { check_kernel(kernel, 2); }); };
   const KernelTerm good = se_ard_kernel(2).terms.front();
   CHECK(id_of({{good}}) == "");
   CHECK(id_of({}) == "kernel.no_terms");

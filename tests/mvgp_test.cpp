@@ -7,17 +7,12 @@
 #include <limits>
 #include <numbers>
 
-#include "lfdtools/error.hpp"
-#include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
 namespace {
-
-Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 /// A model with given hyperparameters: nothing optimised.
 MvgpModel plain_model(const Matrix& X, const Matrix& W, const Matrix& A, const Kernel& kernel,
@@ -208,13 +203,8 @@ TEST_CASE("with a free Omega the row is Gaussian") {
 
 TEST_CASE("models and queries that do not fit are refused") {
   const MvgpModel good = plain_model(random_matrix(5, 2, 61), random_matrix(5, 3, 62), {}, se_ard_kernel(2));
-  const auto id_of = [](const MvgpModel& model, const Vector& x) -> std::string {
-    try {
-      (void)predict(model, x);
-    } catch (const DataError& error) {
-      return error.id();
-    }
-    return "";
+  const auto id_of = [](const MvgpModel& model, const Vector& x) {
+    return refused_as(Fault::data, [&] { (void)predict(model, x); });
   };
   const Vector x = Vector::Zero(2);
   CHECK(id_of(good, x) == "");

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/mvgp.hpp"
 #include "lfdtools/random.hpp"
 #include "process_fixture.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -17,16 +17,6 @@ bool all_finite(const MvgpModel& model) {
   return log_hyperparameters(model.kernel).allFinite() && std::isfinite(model.noise_variance) &&
          model.noise_variance > 0 && model.omega.allFinite() && std::isfinite(model.log_marginal_likelihood) &&
          prediction.mean.allFinite() && std::isfinite(prediction.variance);
-}
-
-template <typename Call>
-std::string id_of(Call&& call) {
-  try {
-    (void)call();
-  } catch (const DataError& error) {
-    return error.id();
-  }
-  return "";
 }
 
 }  // namespace
@@ -105,24 +95,28 @@ TEST_CASE("what cannot be trained is refused by name") {
   const auto with = [&](auto&& change) {
     MvgpOptions options = paper;
     change(options);
-    return id_of([&] { return train_mvgp(rows.X, rows.Y, {}, options); });
+    return refused_as(Fault::data, [&] { return train_mvgp(rows.X, rows.Y, {}, options); });
   };
   CHECK(with([](MvgpOptions&) {}) == "");
   CHECK(with([](MvgpOptions& o) { o.psi = Matrix::Zero(1, 1); }) == "mvgp.bad_prior");
   CHECK(with([](MvgpOptions& o) { o.nu = 3; }) == "mvgp.bad_prior");
   CHECK(with([](MvgpOptions& o) { o.row_noise = Vector::Zero(6); }) == "mvgp.shape");
   CHECK(with([](MvgpOptions& o) { o.kernel = se_ard_kernel(3); }) == "kernel.bad_inputs");
-  CHECK(id_of([&] { return train_mvgp(Matrix(0, 2), Matrix(0, 4), {}, paper); }) == "mvgp.no_rows");
-  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y.topRows(3), {}, paper); }) == "mvgp.shape");
-  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y * std::nan(""), {}, paper); }) == "mvgp.not_finite");
-  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y, Matrix::Ones(4, 4), paper); }) == "mvgp.bad_transform");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(Matrix(0, 2), Matrix(0, 4), {}, paper); }) == "mvgp.no_rows");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X, rows.Y.topRows(3), {}, paper); }) == "mvgp.shape");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X, rows.Y * std::nan(""), {}, paper); }) ==
+        "mvgp.not_finite");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X, rows.Y, Matrix::Ones(4, 4), paper); }) ==
+        "mvgp.bad_transform");
   MvgpOptions linear = paper;
   linear.mean = MeanType::linear;
-  CHECK(id_of([&] { return train_mvgp(rows.X.topRows(2), rows.Y.topRows(2), {}, linear); }) == "mvgp.mean_rank");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X.topRows(2), rows.Y.topRows(2), {}, linear); }) ==
+        "mvgp.mean_rank");
   MvgpOptions ml = paper;
   ml.omega = OmegaRule::ml;
-  CHECK(id_of([&] { return train_mvgp(rows.X, rows.Y, {}, ml); }) == "");
-  CHECK(id_of([&] { return train_mvgp(rows.X.topRows(4), rows.Y.topRows(4), {}, ml); }) == "mvgp.omega_unbounded");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X, rows.Y, {}, ml); }) == "");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(rows.X.topRows(4), rows.Y.topRows(4), {}, ml); }) ==
+        "mvgp.omega_unbounded");
 }
 
 TEST_CASE(
@@ -190,9 +184,9 @@ TEST_CASE("a Student-t process has at least the evidence of the Gaussian one, an
   options.nu = shared[0].nu;
   CHECK(train_mvgp(X, equal, {}, options).psi.isApprox(shared[0].psi, 1e-12));
   options.nu = 9;
-  CHECK(id_of([&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.bad_prior");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.bad_prior");
   options = paper_mvgp_options(2);
   options.process = ProcessType::student_t;
   options.omega = OmegaRule::ml;
-  CHECK(id_of([&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.omega_unbounded");
+  CHECK(refused_as(Fault::data, [&] { return train_mvgp(X, equal, {}, options); }) == "mvgp.omega_unbounded");
 }

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 #include "path_fixture.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -162,12 +162,7 @@ TEST_CASE("one sample, a resting hand, and inputs that cannot be") {
   CHECK(rest.condition[1] == condition_number(jacobian(arm.robot(), rest.joints.row(1).transpose())));
 
   const auto id_of = [&](const std::vector<Pose>& poses, const Vector& times, const PathOptions& options = {}) {
-    try {
-      (void)solve_path(arm, poses, times, options);
-    } catch (const Error& error) {
-      return error.id();
-    }
-    return std::string();
+    return refusal_of([&] { (void)solve_path(arm, poses, times, options); }).id;
   };
   CHECK(id_of({}, Vector()) == "path.shape");
   CHECK(id_of({pose, pose}, Vector::Zero(2)) == "path.time_not_rising");

@@ -2,14 +2,9 @@
 #pragma once
 
 #include "lfdtools/linalg.hpp"
-#include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
 
 namespace lfd {
-
-inline Matrix random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 struct Rows {
   Matrix X, Y;

@@ -5,24 +5,15 @@
 
 #include "judge_fixture.hpp"
 #include "lfdtools/metrics.hpp"
-#include "lfdtools/random.hpp"
+#include "random_matrix.hpp"
 
 using namespace lfd;
 
-namespace {
-
-Matrix drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, columns, [&] { return random.normal(); });
-}
-
-}  // namespace
-
 TEST_CASE("conditioning is that of the joint Gaussian, by its information form") {
-  const Matrix root = drawn(6, 6, 1);
-  const WeightDistribution prior{drawn(6, 1, 2), root * root.transpose()};
-  const Matrix H = drawn(2, 6, 3);
-  const Vector values = drawn(2, 1, 4);
+  const Matrix root = random_matrix(6, 6, 1);
+  const WeightDistribution prior{random_matrix(6, 1, 2), root * root.transpose()};
+  const Matrix H = random_matrix(2, 6, 3);
+  const Vector values = random_matrix(2, 1, 4);
   const WeightDistribution w = conditioned(prior, H, values, 0.1);
   const Matrix information = prior.covariance.inverse() + H.transpose() * H / 0.1;
   const Matrix covariance = information.inverse();
@@ -32,7 +23,7 @@ TEST_CASE("conditioning is that of the joint Gaussian, by its information form")
 }
 
 TEST_CASE("shrinkage is Ledoit and Wolf's, row by row from the definition") {
-  Matrix rows = drawn(9, 5, 5);
+  Matrix rows = random_matrix(9, 5, 5);
   rows.col(0) *= 5;  // far enough from a multiple of the identity
   const Matrix centred = rows.rowwise() - rows.colwise().mean();
   Matrix S = Matrix::Zero(5, 5);

@@ -1,6 +1,7 @@
 // How a call is refused.
 #pragma once
 
+#include <catch2/catch.hpp>
 #include <string>
 
 #include "lfdtools/error.hpp"
@@ -21,4 +22,13 @@ Refusal refusal_of(Call call) {
     return {error.fault(), error.id(), error.what(), error.place()};
   }
   return {};
+}
+
+/// The id of that refusal, empty where there is none; one with another fault fails the test.
+template <class Call>
+std::string refused_as(lfd::Fault fault, Call call) {
+  const Refusal refusal = refusal_of(call);
+  INFO(refusal.id);
+  if (!refusal.id.empty()) CHECK(refusal.fault == fault);
+  return refusal.id;
 }

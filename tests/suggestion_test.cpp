@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "lfdtools/error.hpp"
 #include "lfdtools/fold.hpp"
 #include "lfdtools/random.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -89,12 +89,7 @@ Skill without_row(Skill skill, Eigen::Index i) {
 }
 
 std::string id_of(const GoalBox& box) {
-  try {
-    (void)goal_grid(box);
-  } catch (const UsageError& error) {
-    return error.id();
-  }
-  return "";
+  return refused_as(Fault::usage, [&] { (void)goal_grid(box); });
 }
 
 }  // namespace

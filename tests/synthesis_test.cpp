@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "lfdtools/error.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using Eigen::Index;
@@ -49,15 +49,6 @@ double nearest(const Samples& path, const Obstacle& post, double least_bump) {
     least = std::min(least, std::hypot(path(i, 0) - post.center[0], path(i, 1) - post.center[1]));
   }
   return least;
-}
-
-std::string id_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "none";
 }
 
 }  // namespace
@@ -249,9 +240,9 @@ TEST_CASE("an experiment that cannot be made is refused by name") {
   const auto id_after = [](const std::function<void(Experiment&)>& change) {
     Experiment e = around_a_post();
     change(e);
-    return id_of([&] { (void)synthesize(e); });
+    return refusal_of([&] { (void)synthesize(e); }).id;
   };
-  CHECK(id_after([](Experiment&) {}) == "none");
+  CHECK(id_after([](Experiment&) {}) == "");
   CHECK(id_after([](Experiment& e) { e.start = Vector::Zero(2); }) == "synthesis.shape");
   CHECK(id_after([](Experiment& e) { e.bumps.resize(2); }) == "synthesis.shape");
   CHECK(id_after([](Experiment& e) { e.holes[1].position[0] = std::nan(""); }) == "synthesis.not_finite");
@@ -263,6 +254,6 @@ TEST_CASE("an experiment that cannot be made is refused by name") {
   CHECK(id_after([](Experiment& e) { e.obstacle->ways = {xyz(0, 0, 1)}; }) == "synthesis.way");
   CHECK(id_after([](Experiment& e) { e.obstacle->center = xyz(0.8, 0.2, 9); }) == "synthesis.end_in_obstacle");
   const Experiment e = around_a_post();
-  CHECK(id_of([&] { (void)intention(e, e.start, Vector::Constant(1, 1.1)); }) == "synthesis.value");
-  CHECK(id_of([&] { (void)intention(e, e.start, Vector::Constant(1, 0.1), 2); }) == "synthesis.value");
+  CHECK(refusal_of([&] { (void)intention(e, e.start, Vector::Constant(1, 1.1)); }).id == "synthesis.value");
+  CHECK(refusal_of([&] { (void)intention(e, e.start, Vector::Constant(1, 0.1), 2); }).id == "synthesis.value");
 }

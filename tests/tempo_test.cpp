@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "lfdtools/dmp_fit.hpp"
-#include "lfdtools/error.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/skill_train.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -99,12 +99,7 @@ void check_unchanged(const std::vector<SkillRow>& rows) {
 }
 
 std::string id_of(const std::vector<SkillRow>& rows, const SkillOptions& options) {
-  try {
-    (void)train_skill(xy, rows, options);
-  } catch (const DataError& error) {
-    return error.id();
-  }
-  return "";
+  return refused_as(Fault::data, [&] { (void)train_skill(xy, rows, options); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/methods.hpp"
 #include "lfdtools/metrics.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 
@@ -22,12 +23,7 @@ ValidationOptions every_method() {
 }
 
 std::string id_of(const std::vector<TargetDemonstrations>& targets, const ValidationOptions& options) {
-  try {
-    (void)leave_one_target_out(targets, options);
-  } catch (const Error& error) {
-    return error.id();
-  }
-  return "";
+  return refusal_of([&] { (void)leave_one_target_out(targets, options); }).id;
 }
 
 }  // namespace
@@ -192,13 +188,8 @@ TEST_CASE("two targets are enough to learn from for test targets, one is not, no
   for (const auto& score : judge_on_test_targets(two, {targets[5]}, every_method()).scores) {
     CHECK(std::isfinite(score.rmse));
   }
-  const auto id = [](const auto& learnt, const auto& test) -> std::string {
-    try {
-      (void)judge_on_test_targets(learnt, test, {});
-    } catch (const Error& error) {
-      return error.id();
-    }
-    return "";
+  const auto id = [](const auto& learnt, const auto& test) {
+    return refusal_of([&] { (void)judge_on_test_targets(learnt, test, {}); }).id;
   };
   CHECK(id(one, two) == "validation.too_few_targets");
   CHECK(id(two, std::vector<TargetDemonstrations>{}) == "validation.no_test_target");

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "lfdtools/error.hpp"
+#include "refusal.hpp"
 
 using namespace lfd;
 using namespace lfd::cli;
@@ -40,11 +41,8 @@ TEST_CASE("lists and ranges") {
 }
 
 TEST_CASE("the message names option and value") {
-  try {
-    (void)integer_value("-k", "4.5");
-    FAIL();
-  } catch (const UsageError& error) {
-    CHECK(std::string(error.what()) == "-k takes a whole decimal number, not '4.5'");
-    CHECK(error.id() == "usage.value");
-  }
+  const Refusal refusal = refusal_of([] { (void)integer_value("-k", "4.5"); });
+  CHECK(refusal.text == "-k takes a whole decimal number, not '4.5'");
+  CHECK(refusal.id == "usage.value");
+  CHECK(refusal.fault == Fault::usage);
 }
