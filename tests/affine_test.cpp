@@ -24,7 +24,7 @@ double evidence(const Matrix& X, const Matrix& Y, double penalty) {
 
 }  // namespace
 
-TEST_CASE("least squares solves the normal equations; where rows leave it open, with the smallest coefficients") {
+TEST_CASE("least squares solves the normal equations, and where rows leave it open, with the smallest coefficients") {
   const Matrix X = random_matrix(20, 3, 1);
   const Matrix Y = random_matrix(20, 4, 2);
   Matrix H(20, 4);

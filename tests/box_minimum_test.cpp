@@ -74,7 +74,7 @@ TEST_CASE("values that are not finite shorten the step") {
   CHECK_THROWS_AS(minimize_in_box(nowhere, Vector::Zero(1), Vector::Constant(1, -1), Vector::Ones(1)), DataError);
 }
 
-TEST_CASE("however early it is stopped, the result is no higher than the start; a flat function stops at once") {
+TEST_CASE("however early it is stopped, the result is no higher than the start, a flat function stops at once") {
   const Objective flat = [](const Vector&, Vector& g) {
     g.setZero();
     return 3.0;

@@ -241,7 +241,7 @@ TEST_CASE("what cannot be told is refused") {
   CHECK(refusal_of([&] { (void)closest_approach(arm, Samples::Constant(2, 6, NAN)); }).id == "clearance.not_finite");
 }
 
-TEST_CASE("of the arm itself, neighbours always overlap and are left aside; a folded arm touches itself") {
+TEST_CASE("of the arm itself, neighbours always overlap and are left aside, a folded arm touches itself") {
   const Robot robot = arm_of_file(GENERATE("ur10", "ur10e"));
   const ArmClearance arm(robot, {});
   Random random(6);

@@ -30,7 +30,7 @@ TEST_CASE("means by method in their order") {
   CHECK(errors[1].rmse == std::vector<double>{4, 4, 4});
 }
 
-TEST_CASE("the ratio is to the best simple opponent; methods that learn more are none") {
+TEST_CASE("the ratio is to the best simple opponent, methods that learn more are none") {
   const auto ratio = against_best_simple(
       scores({{"skill", {1, 2, 3}}, {"line", {9, 9, 9}}, {"affine", {2, 4, 6}}, {"gpr", {0, 0, 0}}}));
   REQUIRE(ratio);
@@ -59,7 +59,7 @@ TEST_CASE("the interval holds the ratio and narrows with more targets") {
   CHECK(width[1] < 0.5 * width[0]);
 }
 
-TEST_CASE("reliability averages over targets; a noise floor that no target has is none") {
+TEST_CASE("reliability averages over targets, a noise floor that no target has is none") {
   Validation validation = scores({{"skill", {1, 1}}, {"line", {1, 1}}});
   for (std::size_t i = 0; i < 2; ++i) {
     const double share = i == 0 ? 1.0 : 0.5;

@@ -195,7 +195,7 @@ TEST_CASE("figures of the three fits on a bump of 10 cm at 500 Hz, clean and wit
   CHECK(millimetres(DmpFitMethod::trajectory, noisy) < 0.25);
 }
 
-TEST_CASE("the scaling changes the weights, not the motion; times may start anywhere; rmse is that of the rollout") {
+TEST_CASE("the scaling changes the weights, not the motion, times may start anywhere, rmse is that of the rollout") {
   Trajectory demo = sampled(linspace(0, 1, 120), bump);
   for (const DmpFitMethod fit : {DmpFitMethod::trajectory, DmpFitMethod::ls, DmpFitMethod::lwr}) {
     DmpFitOptions options;
@@ -222,7 +222,7 @@ TEST_CASE("measured ends replace those of the samples") {
   CHECK(rollout(dmp, Vector::Ones(1)).positions(0, 0) == Approx(0.303).epsilon(1e-8));
 }
 
-TEST_CASE("an axis that stands still has zero weights; one whose goal is its start is refused under goal scaling") {
+TEST_CASE("an axis that stands still has zero weights, one whose goal is its start is refused under goal scaling") {
   const Vector t = linspace(0, 1, 100);
   Trajectory demo{t, Samples(100, 3)};
   for (int k = 0; k < 100; ++k) {

@@ -33,7 +33,7 @@ TEST_CASE("a spread is the covariance of the file, by sample and turned into the
   }
 }
 
-TEST_CASE("a shift grows along the way; two errors that are independent add their covariances") {
+TEST_CASE("a shift grows along the way, two errors that are independent add their covariances") {
   const Eigen::Index T = 5;
   const Matrix3 R = rotation_from_rpy({0.3, -0.5, 1.0});
   const Vector share = Vector::LinSpaced(T, 0, 1);

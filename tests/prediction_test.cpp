@@ -4,7 +4,7 @@
 
 using namespace lfd;
 
-TEST_CASE("the normal band is 1.96 standard deviations; rounding below zero is zero") {
+TEST_CASE("the normal band is 1.96 standard deviations, rounding below zero is zero") {
   Samples variance(1, 2);
   variance << 4, -1e-18;
   const Band band = normal_band(variance);

@@ -233,7 +233,7 @@ TEST_CASE("one demonstration a target is enough for every method") {
   CHECK_FALSE(validation.noise_floor[0]);
 }
 
-TEST_CASE("two targets that coincide are no obstacle; where nothing but one change is left to learn from, a skill is") {
+TEST_CASE("two targets that coincide are no obstacle, where nothing but one change is left to learn from, a skill is") {
   auto targets = small_targets();
   targets[1].demonstrations = targets[0].demonstrations;
   for (const auto& score : leave_one_target_out(targets, every_method()).scores) CHECK(std::isfinite(score.rmse));
