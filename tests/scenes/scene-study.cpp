@@ -122,7 +122,7 @@ class Study {
     std::vector<Solid> solids = task_.obstacles;
     solids.insert(solids.end(), task_.ground.begin(), task_.ground.end());
     const ArmClearance bodies(teacher_.arm().robot(), solids);
-    return touching(bodies, joints, spread, {}, {.self = true}).path.probability;
+    return touching(bodies, joints, spread, {}, {.self = true, .draws = 2048}).path.probability;
   }
 
   /// What becomes, at its samples, of one of the paths that `told`, the probability of touching, speaks of.
@@ -140,7 +140,7 @@ class Study {
   /// The probability of touching, and how often what it speaks of does touch: paths drawn from the skill's covariance,
   /// the same about the skill's way to where a goal that is off was seen.
   void judge_chances(const BandedSkill& banded) {
-    constexpr Eigen::Index every = 2;
+    constexpr Eigen::Index every = 4;
     constexpr std::uint64_t draws = 5;
     const auto sparse = [&](const Samples& path) {
       return Samples(path(Eigen::seq(0, path.rows() - 1, Eigen::fix<every>), Eigen::all));

@@ -1,15 +1,14 @@
 #!/bin/sh
 # Experiment B as a rate over many scenes: boxes between start and holes, round which there is one way or two. In each, a
 # teacher who knows the scene demonstrates six holes with the whole arm clear; every method learns from the demonstrations
-# alone; FCL judges what the arm does on the way to four new holes (tests/scenes, man lfdtools(7)). Ten seconds a
-# scene and processor, 20 minutes in all on two.
+# alone; FCL judges what the arm does on the way to four new holes (tests/scenes, man lfdtools(7)). A quarter of a minute
+# a scene and processor, half an hour in all on two.
 #
 #   sh share/lfdtools/peg-in-hole/scenes/run.sh
 #
 # LFD_ONE_WAY and LFD_TWO_WAYS: how many scenes of each kind (134, 66); LFD_FIRST: number of the first (1001; smaller ones
-# served to write the study). Scenes that the teacher cannot show, or whose
-# straight way is clear to two new holes or more, are set aside and counted. Results under build/scenes: scenes.csv, every
-# motion; table.txt, which is printed too.
+# served to write the study). Scenes that the teacher cannot show, or whose straight way is clear to two new holes or
+# more, are set aside and counted. Results under build/scenes: scenes.csv, every motion; table.txt, which is printed too.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../../.." && pwd)
@@ -30,7 +29,7 @@ scenes() {
   next=$first
   kept=0
   while [ "$kept" -lt "$2" ]; do
-    last=$((next + 63))
+    last=$((next + 3 + 4 * ($2 - kept)))  # a scene in six or seven is kept
     for number in $(seq $next $last); do echo "$1 $number"; done |
       xargs -P "$jobs" -L 1 sh -c '"$LFD_STUDY" $0 $1 >"$work/$0-$1.new" && mv "$work/$0-$1.new" "$work/$0-$1"'
     kept=0

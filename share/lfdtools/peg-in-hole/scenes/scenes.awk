@@ -3,13 +3,13 @@
 BEGIN { FS = ","; z = 1.959964 }
 NR == 1 { next }
 $13 != "" {
-  if ($5 == "refused") next
   bin = $13 < 0.001 ? 1 : $13 < 0.01 ? 2 : $13 < 0.1 ? 3 : 4
   key = $3 "," bin
   motion = key "," $1 "," $2 "," $4
   if (!(motion in drawn)) { told_motions[key]++; told[key] += $13 }
   drawn[motion]++
   hit[motion] += $5 == "collided"
+  lost[$3] += $5 == "refused"
   told_of[motion] = $13
   next
 }
@@ -87,7 +87,7 @@ END {
   about["skill-goal-off"] = "the same about its way to goals that are off by 2 cm an axis"
   about["skill-itself"] = "the mean of the skill, in the middle of what is drawn"
   for (m = 1; m <= kinds; ++m) {
-    printf "probability of touching, told and seen, percent: %s\n", about[kind[m]]
+    printf "probability of touching, told and seen, percent: %s; %d out of reach\n", about[kind[m]], lost[kind[m]]
     for (bin = 1; bin <= bins; ++bin) {
       key = kind[m] "," bin
       if (!told_motions[key]) continue
