@@ -3,10 +3,8 @@
 BEGIN { FS = ","; z = 1.959964 }
 NR == 1 { next }
 $13 != "" {
-  bin = $13 < 0.001 ? 1 : $13 < 0.01 ? 2 : $13 < 0.1 ? 3 : 4
-  key = $3 "," bin
-  motion = key "," $1 "," $2 "," $4
-  if (!(motion in drawn)) { told_motions[key]++; told[key] += $13 }
+  motion = $3 "," $1 "," $2 "," $4
+  if (!(motion in drawn)) bin_of[motion] = $13 < 0.001 ? 1 : $13 < 0.01 ? 2 : $13 < 0.1 ? 3 : 4
   drawn[motion]++
   hit[motion] += $5 == "collided"
   lost[$3] += $5 == "refused"
@@ -81,7 +79,7 @@ END {
   }
   # A motion counts once, by the share of its draws that touch, and a scene's four are not told apart: the interval is
   # the normal one over motions.
-  bins = split("under 0.001,0.001 to 0.01,0.01 to 0.1,over 0.1", names, ",")
+  bins = split("under 0.001,0.001 to 0.01,0.01 to 0.1,over 0.1,all", names, ",")
   kinds = split("skill-drawn,skill-goal-off,skill-itself", kind, ",")
   about["skill-drawn"] = "paths drawn from the covariance of the skill"
   about["skill-goal-off"] = "the same about its way to goals that are off by 2 cm an axis"
@@ -89,20 +87,19 @@ END {
   for (m = 1; m <= kinds; ++m) {
     printf "probability of touching, told and seen, percent: %s; %d out of reach\n", about[kind[m]], lost[kind[m]]
     for (bin = 1; bin <= bins; ++bin) {
-      key = kind[m] "," bin
-      if (!told_motions[key]) continue
       n = sum = squares = seen = 0
       for (motion in drawn) {
-        if (index(motion, key ",") != 1) continue
+        if (index(motion, kind[m] ",") != 1 || (bin < bins && bin_of[motion] != bin)) continue
         ++n
         share = hit[motion] / drawn[motion]
         seen += share
         sum += share - told_of[motion]
         squares += (share - told_of[motion]) ^ 2
       }
+      if (n == 0) continue
       mean = sum / n
       sd = n > 1 ? sqrt((squares - n * mean * mean) / (n - 1)) : 0
-      printf "%-14s %4d motions: told %6.2f, seen %6.2f, seen less told %6.2f (%.2f to %.2f)\n", names[bin], n, 100 * told[key] / n, 100 * seen / n, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
+      printf "%-14s %4d motions: told %6.2f, seen %6.2f, seen less told %6.2f (%.2f to %.2f)\n", names[bin], n, 100 * (seen - sum) / n, 100 * seen / n, 100 * mean, 100 * (mean - z * sd / sqrt(n)), 100 * (mean + z * sd / sqrt(n))
     }
   }
 }
