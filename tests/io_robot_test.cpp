@@ -134,6 +134,16 @@ TEST_CASE("a calibration that says too little, too much or nonsense is refused w
   CHECK(refusal(changed(calibration, "hash", "hush")).id.empty());
   CHECK(refusal(changed(calibration, "-0.612983", "-0.9")).id == "robot.unknown_model");
   CHECK(refusal(changed(calibration, "1.570312", "0.4")).id == "ur10.not_a_ur");
+  // Lengths that are right do not make the rest right.
+  const Refusal turned = refusal(changed(calibration, "yaw: 2.2e-05", "yaw: 1.0"));
+  CHECK(turned.id == "robot.far_from_model");
+  CHECK(turned.place.pointer == "/kinematics/wrist_1");
+  CHECK(refusal(changed(calibration, "{x: 0, y: 0, z: 0.18093", "{x: 0.5, y: 0, z: 0.18093")).place.pointer ==
+        "/kinematics/shoulder");
+  const Refusal degrees = refusal(changed(calibration, "pitch: 3.141592653589793", "pitch: 180"));
+  CHECK(degrees.id == "robot.far_from_model");
+  CHECK(degrees.place.pointer == "/kinematics/wrist_3");
+  CHECK(refusal(calibration + calibration).id == "yaml.duplicate_key");
   CHECK(refusal("").id == "yaml.wrong_type");
   CHECK(refusal("kinematics: 3\n").id == "yaml.wrong_type");
   CHECK(refusal("kinematics: {shoulder: [\n").id == "yaml.syntax");

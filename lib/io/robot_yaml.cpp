@@ -3,6 +3,7 @@
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +18,9 @@
 namespace lfd {
 namespace {
 
-constexpr double far_lengths = 0.02;  // [m]: no calibration moves a joint so far
+// No calibration moves a joint so far.
+constexpr double far_lengths = 0.02;  // [m]
+constexpr double far_turned = 0.1;    // [rad]
 const std::array<std::string, 6> joint_keys = {"shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"};
 const std::array<std::string, 7> models = {"ur10", "ur10e", "ur3", "ur5", "ur3e", "ur5e", "ur16e"};
 
@@ -28,6 +31,7 @@ class CalibrationReader {
 
   [[nodiscard]] JointChain read(const YAML::Node& root) {
     const YAML::Node kinematics = member(root, "kinematics", "");
+    only(root, "", {"kinematics"}, "");
     only(kinematics, "/kinematics", {joint_keys.begin(), joint_keys.end()}, "hash");
     JointChain chain;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -90,6 +94,15 @@ double difference(const UrGeometry& a, const UrGeometry& b) {
                    std::abs(a.d5 - b.d5), std::abs(a.d6 - b.d6)});
 }
 
+/// Whether a joint's axis, z of its frame, wherever on it the frame lies, or the whole frame, is elsewhere.
+bool far_apart(const Pose& own, const Pose& nominal, bool whole) {
+  const Vector3 off = nominal.position - own.position;
+  if (whole) return off.norm() > far_lengths || distance(own, nominal).rotation > far_turned;
+  const Vector3 axis = own.rotation.col(2);
+  return axis.cross(off).norm() > far_lengths || axis.cross(nominal.rotation.col(2)).norm() > far_turned ||
+         axis.dot(nominal.rotation.col(2)) < 0;
+}
+
 }  // namespace
 
 Robot read_calibration(const std::string& text, const std::string& file, Messages& messages, bool strict) {
@@ -138,6 +151,15 @@ Robot read_calibration(const std::string& text, const std::string& file, Message
   // The bodies stay where they are at q = 0: DH frames of a calibrated arm may lie far from them.
   const auto nominal = joint_frames(model, Joints::Zero()), own = joint_frames(robot, Joints::Zero());
   const Pose base = robot.frames["base"];
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!far_apart(own[i], base * nominal[i], i == 6)) continue;
+    const std::string key = joint_keys[std::min<std::size_t>(i, 5)];
+    throw ConfigError(
+        "robot.far_from_model",
+        fmt::format("{} of {} is over {:g} mm or {:g} rad from where a {} has it",
+                    i == 6 ? "the flange" : "the joint axis", key, 1e3 * far_lengths, far_turned, model.name),
+        {file, 0, 0, "/kinematics/" + key});
+  }
   for (Capsule link : model.links) {
     const auto i = static_cast<std::size_t>(link.frame);
     const Pose moved = inverse(own[i]) * base * nominal[i];
