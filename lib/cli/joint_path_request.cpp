@@ -73,6 +73,7 @@ class Answer {
     if (request.seed) options_.seed = Eigen::Map<const Joints>(request.seed->data());
     if (!request.posture.empty()) options_.branch = posture_of(request.posture, arm_, run);
     options_.refinements = request.given_rows ? 0 : most_halvings;
+    if (request.retime) options_.curve_rest = at_rest;
   }
 
   void run() {
