@@ -193,8 +193,9 @@ class Answer {
     if (less > 0) {
       const std::string words = describe(recording.demonstration.labels);
       run_.messages().note("ik.rest_cut",
-                           fmt::format("{}{} rows at rest are left out: nearer than {} rad to the first or last",
-                                       words.empty() ? "" : words + ": ", less, at_rest));
+                           fmt::format("{}{} rows in which the arm rests are left out: within {} rad of the first or "
+                                       "last row, or staying within {} rad between",
+                                       words.empty() ? "" : words + ": ", less, at_rest, at_rest / 10));
     }
     return moving;
   }
