@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lfdtools/error.hpp"
+#include "lfdtools/joint_curve.hpp"
 #include "lfdtools/path_refinement.hpp"
 #include "lfdtools/posture.hpp"
 #include "lfdtools/posture_graph.hpp"
@@ -19,7 +20,8 @@ namespace {
 using Layer = std::vector<IkSolution>;
 
 void check(const std::vector<Pose>& flange, const Vector& times, const PathOptions& options) {
-  const bool positive = options.tolerance > 0.0 && options.max_step > 0.0 && options.midpoint_tolerance > 0.0;
+  const bool positive = options.tolerance > 0.0 && options.max_step > 0.0 && options.midpoint_tolerance > 0.0 &&
+                        (!options.curve_rest || *options.curve_rest > 0.0);
   const bool counted = options.refinements >= 0 && options.refinements <= 20 &&
                        (!options.branch || (*options.branch >= 0 && *options.branch <= 7));
   if (!positive || !counted || !(options.step_slack >= 1.0) || (options.seed && !options.seed->allFinite())) {
@@ -125,6 +127,27 @@ double deviation_midway(const Robot& robot, const Joints& q0, const Joints& q1, 
   return distance(forward_kinematics(robot, 0.5 * (q0 + q1)), interpolate(from, to, 0.5)).largest();
 }
 
+/// How far the hand is from its path on the curve through the rows, for the interval that ends at each row: the
+/// largest at a quarter, half and three quarters of the way.
+Vector deviation_on_curve(const Robot& robot, const Samples& joints, const std::vector<Pose>& flange, double rest) {
+  Vector deviation = Vector::Zero(joints.rows());
+  if (joints.rows() < 2) return deviation;
+  const std::vector<Eigen::Index> rows = moving_rows(joints, rest);
+  const JointCurve curve(joints(rows, Eigen::all));
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const auto knot = static_cast<Eigen::Index>(k);
+    const Pose& from = flange[static_cast<std::size_t>(rows[k - 1])];
+    const Pose& to = flange[static_cast<std::size_t>(rows[k])];
+    const double begin = curve.along()[knot - 1], end = curve.along()[knot];
+    for (const double share : {0.25, 0.5, 0.75}) {
+      const Joints q = curve(Vector::Constant(1, begin + share * (end - begin))).row(0).transpose();
+      const double off = distance(forward_kinematics(robot, q), interpolate(from, to, share)).largest();
+      deviation[rows[k]] = std::max(deviation[rows[k]], off);
+    }
+  }
+  return deviation;
+}
+
 /// Adds a fault; the first is what the path is told by.
 void fail(JointPath& path, const PathFault& fault) {
   if (path.faults.empty()) {
@@ -165,8 +188,8 @@ void judge(const InverseKinematics& arm, const PathOptions& options, const PathS
   for (Eigen::Index t = 1; t < path.joints.rows(); ++t) {
     if (!(path.midpoint_deviation[t] > options.midpoint_tolerance)) continue;
     fail(PathStatus::deviates, t,
-         fmt::format("the hand is off its path by {:.3g} (m or rad) midway to {}{}", path.midpoint_deviation[t],
-                     sampling.name(t), why(t)),
+         fmt::format("the hand is off its path by {:.3g} (m or rad) {} {}{}", path.midpoint_deviation[t],
+                     options.curve_rest ? "on the way to" : "midway to", sampling.name(t), why(t)),
          sampling, path);
     break;
   }
@@ -240,6 +263,10 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
     path.midpoint_deviation[t] = deviation_midway(robot, before, q, flange[i - 1], flange[i]);
     path.branch_changes += path.branch[i] != path.branch[i - 1] ? 1 : 0;
   }
+  if (options.curve_rest) {
+    const Vector on_curve = deviation_on_curve(robot, path.joints, flange, *options.curve_rest);
+    path.midpoint_deviation = path.midpoint_deviation.cwiseMax(on_curve);
+  }
   return path;
 }
 
@@ -277,34 +304,6 @@ JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flan
   fail(path, {PathStatus::other_branch, kept.sample, reason});
   for (const PathFault& fault : own) fail(path, fault);
   return path;
-}
-
-JointPath without_rest(const JointPath& path, double radius) {
-  const Eigen::Index T = path.joints.rows();
-  const auto near = [&](Eigen::Index t, Eigen::Index end) {
-    return (path.joints.row(t) - path.joints.row(end)).cwiseAbs().maxCoeff() <= radius;
-  };
-  Eigen::Index first = 0, last = T - 1;
-  while (first + 1 < T && near(first + 1, 0)) ++first;
-  while (last > 0 && near(last - 1, T - 1)) --last;
-  std::vector<Eigen::Index> kept{0};
-  for (Eigen::Index t = first + 1; t < last; ++t) {
-    if ((path.joints.row(t) - path.joints.row(kept.back())).cwiseAbs().maxCoeff() > radius / 10) kept.push_back(t);
-  }
-  if (T > 1) kept.push_back(T - 1);
-  JointPath moving = path;
-  moving.times = path.times(kept);
-  moving.joints = path.joints(kept, Eigen::all);
-  moving.residual = path.residual(kept);
-  moving.condition = path.condition(kept);
-  moving.midpoint_deviation = path.midpoint_deviation(kept);
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    moving.branch[k] = path.branch[static_cast<std::size_t>(kept[k])];
-    moving.given[k] = path.given[static_cast<std::size_t>(kept[k])];
-  }
-  moving.branch.resize(kept.size());
-  moving.given.resize(kept.size());
-  return moving;
 }
 
 JointPath solve_path(const Robot& robot, const std::vector<Pose>& flange, const Vector& times,

@@ -8,6 +8,7 @@
 
 #include "lfdtools/error.hpp"
 #include "lfdtools/interpolation.hpp"
+#include "lfdtools/joint_curve.hpp"
 #include "retime_interval.hpp"
 
 namespace lfd {
@@ -16,9 +17,8 @@ namespace {
 using retiming::Interval;
 using retiming::Slope;
 
-constexpr double least_knot_distance = 1e-4;  // [rad]
-constexpr std::size_t least_rows = 50;        // whose spline is the motion
-constexpr double least_period = 1e-6;         // between rows that the path does not tell apart [s]
+constexpr std::size_t least_rows = 50;  // whose spline is the motion
+constexpr double least_period = 1e-6;   // between rows that the path does not tell apart [s]
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const Samples& joints, const RetimeOptions& options) {
@@ -67,15 +67,16 @@ Retiming::State Retiming::operator()(double t) const {
 class Retiming::Solver {
  public:
   Solver(const Robot& robot, const Samples& joints, const RetimeOptions& options)
-      : robot_(robot), joints_(joints), options_(options), along_(Vector::Zero(joints.rows())) {
-    const Eigen::Index T = joints.rows();
-    for (Eigen::Index t = 1; t < T; ++t) along_[t] = along_[t - 1] + (joints.row(t) - joints.row(t - 1)).norm();
-  }
+      : robot_(robot),
+        joints_(joints),
+        options_(options),
+        curve_(joints),
+        along_(curve_.along()),
+        rows_(curve_.knots()) {}
 
   [[nodiscard]] Retiming solve() {
-    const Eigen::Index T = joints_.rows();
-    if (!(along_[T - 1] > 1e-9)) return rest();
-    choose_knots();
+    if (curve_.at_rest()) return rest();
+    set_knots();
     lay_grid();
     measure_slopes();
     const bool of_rows = options_.of_rows && rows_.size() >= least_rows;
@@ -112,27 +113,17 @@ class Retiming::Solver {
     return law;
   }
 
-  void choose_knots() {
-    const Eigen::Index T = joints_.rows();
-    rows_ = {0};
-    for (Eigen::Index t = 1; t < T; ++t) {
-      if (along_[t] - along_[rows_.back()] > least_knot_distance) rows_.push_back(t);
-    }
-    if (rows_.back() != T - 1) {
-      if (rows_.size() > 1) rows_.pop_back();
-      rows_.push_back(T - 1);
-    }
-    const Vector knots = along_(rows_);
-    const Samples second = CubicSpline(knots, joints_(rows_, Eigen::all)).second_derivatives();
-    for (Eigen::Index k = 0; k < knots.size(); ++k) {
-      const Eigen::Index row = rows_[static_cast<std::size_t>(k)];
-      law_.knots_.push_back({knots[k], joints_.row(row).transpose(), second.row(k).transpose()});
+  void set_knots() {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const Eigen::Index row = rows_[k];
+      law_.knots_.push_back({along_[row], joints_.row(row).transpose(),
+                             curve_.second_derivatives().row(static_cast<Eigen::Index>(k)).transpose()});
     }
   }
 
   /// Every knot, and between two of them equal intervals.
   void lay_grid() {
-    const double length = along_[along_.size() - 1];
+    const double length = curve_.length();
     for (std::size_t k = 0; k + 1 < rows_.size(); ++k) {
       const double begin = law_.knots_[k].s, h = law_.knots_[k + 1].s - begin;
       const int parts = std::max(4, static_cast<int>(std::ceil(h / length * options_.grid)));
@@ -252,11 +243,12 @@ class Retiming::Solver {
   const Robot& robot_;
   const Samples& joints_;
   const RetimeOptions& options_;
-  Vector along_;                      // summed distances of the rows
-  std::vector<Eigen::Index> rows_;    // that are knots
-  std::vector<std::size_t> at_knot_;  // grid point of each knot
-  std::vector<Slope> slopes_;         // of the grid points
-  std::vector<double> share_;         // of the acceleration limits, at the grid points
+  JointCurve curve_;
+  const Vector& along_;                    // summed distances of the rows
+  const std::vector<Eigen::Index>& rows_;  // that are knots
+  std::vector<std::size_t> at_knot_;       // grid point of each knot
+  std::vector<Slope> slopes_;              // of the grid points
+  std::vector<double> share_;              // of the acceleration limits, at the grid points
   Retiming law_;
 };
 

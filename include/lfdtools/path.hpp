@@ -26,6 +26,10 @@ struct PathOptions {
   /// Where a step is a jump or the hand leaves its path midway, the interval is halved, up to so many times, and the
   /// way chosen anew: a jump keeps its size, sparse samples do not. 0: the samples stay those given.
   int refinements = 0;
+  /// The arm is to go along the JointCurve through the rows that without_rest leaves for this radius [rad], as motions
+  /// of retime do: the hand is compared with its path there too, a quarter, half and three quarters of the way between
+  /// two rows.
+  std::optional<double> curve_rest;
 };
 
 /// How a path came out.
@@ -59,7 +63,8 @@ struct JointPath {
   std::vector<int> branch;          ///< T, see branch_name
   Vector residual;                  ///< T, larger of metres and radians
   Vector condition;                 ///< T, condition number of the Jacobian
-  Vector midpoint_deviation;        ///< T, of the interval ending at the sample (0 for the first), larger of m and rad
+  Vector midpoint_deviation;  ///< T, of the interval ending at the sample (0 for the first), on the curve of curve_rest
+                              ///< too if there is one, larger of m and rad
   double largest_step_ratio = 0.0;  ///< largest joint speed over its limit
   int branch_changes = 0;           ///< samples whose branch differs from the one before
 
@@ -77,11 +82,15 @@ struct JointPath {
 [[nodiscard]] JointPath solve_path(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
                                    const PathOptions& options = {});
 
-/// The path without the rows in which the arm rests: all but the first of those that stay within `radius` of the first
-/// row, all but the last of those that stay within it of the last, and between them those within a tenth of it of the
-/// row before. A hand that settles on its goal goes to and fro by less than it can be held to, and a law of motion that
-/// followed it there exactly would have to stop at each turn.
-/// @param radius  largest joint distance [rad]
+/// The rows of a path in which the arm does not rest: all but those after the first that stay within `radius` of it,
+/// those before the last that stay within it of the last, and between them those that repeat the row before, to
+/// 1e-7 rad, or go to and fro within a tenth of the radius about it; rows of a slow path sampled often stay. A hand
+/// that settles on its goal goes to and fro by less than it can be held to, and a law of motion that followed it there
+/// exactly would have to stop at each turn.
+/// @param joints  T x 6, T >= 1 [rad]   @param radius  largest joint distance [rad]
+[[nodiscard]] std::vector<Eigen::Index> moving_rows(const Samples& joints, double radius);
+
+/// The path without the other rows.
 [[nodiscard]] JointPath without_rest(const JointPath& path, double radius);
 
 /// As above for one robot.

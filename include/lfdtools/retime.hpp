@@ -24,8 +24,8 @@ struct RetimeOptions {
   bool of_rows = true;
 };
 
-/// The law of motion s(t) along a path q(s), q being the cubic spline through the rows over their summed distances in
-/// joint space: between grid points the second derivative of s is constant.
+/// The law of motion s(t) along a path q(s), the JointCurve through the rows: between grid points the second derivative
+/// of s is constant.
 class Retiming {
  public:
   /// Times of the rows, the first 0, strictly rising; the motion rests at both ends [s].
@@ -67,8 +67,7 @@ class Retiming {
 /// The smallest duration from rest to rest, by the method of Pham and Pham, "A new approach to time-optimal path
 /// parameterization based on reachability analysis" (2018): from the end backwards the largest (ds/dt)^2 from which the
 /// rest of the path can still be gone, then forwards as fast as these sets allow. The limits of both ends of a grid
-/// interval hold for its one acceleration. Rows nearer than a ten-thousandth of a radian to the one before lie on the
-/// spline of the others.
+/// interval hold for its one acceleration.
 /// @param robot  for the speed of the tool tip   @param joints  T x 6, T >= 2 [rad]
 /// @throws DataError [retime.shape], [retime.not_finite]; UsageError [retime.options]
 [[nodiscard]] Retiming retime(const Robot& robot, const Samples& joints, const RetimeOptions& options);

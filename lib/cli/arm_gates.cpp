@@ -45,6 +45,14 @@ void declare_arm_gates(Program& program, ArmLimits& limits) {
 
 namespace {
 
+/// A law of motion uses its limits up, and is checked at points that are not the rows.
+constexpr double used_up = 1.0 + 1e-6;
+
+/// Of each row the largest share of a limit.
+Vector share_of(const Samples& rates, const Joints& limit) {
+  return (rates.cwiseAbs().array().rowwise() / limit.transpose().array()).rowwise().maxCoeff();
+}
+
 /// Three digits; what is only rounding away from infinite is told as such.
 std::string condition_words(double condition) {
   return condition > 1e12 ? "infinite (singular)" : fmt::format("{:.3g}", condition);
@@ -65,8 +73,8 @@ void judge_start(const JointPath& path, const Recording& recording, const Joints
       recording.place(0));
 }
 
-bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
-           const ArmLimits& limits, Run& run) {
+bool judge(const JointPath& path, const JointRates& rates, const Recording& recording, const Robot& robot,
+           const Pose& tool, const ArmLimits& limits, Run& run) {
   const Labels& labels = recording.demonstration.labels;
   const std::string name = describe(labels).empty() ? std::string() : describe(labels) + ": ";
   const auto refuse = [&](std::string_view gate, Eigen::Index sample, const std::string& text) {
@@ -82,13 +90,17 @@ bool judge(const JointPath& path, const Recording& recording, const Robot& robot
     break;
   }
   const MotionFigures figures = motion_figures(robot, path.times, path.joints, tool);
-  const Worst speed = worst(figures.speed_ratio);
-  if (speed.value > 1) {
+  Vector of_rates = share_of(rates.speeds, robot.limits.velocity);
+  if (!rates.of_law) of_rates[0] = of_rates[of_rates.size() - 1] = 0.0;
+  const Worst speed = worst(rates.of_law ? of_rates : figures.speed_ratio.cwiseMax(of_rates).eval());
+  if (speed.value > used_up) {
     refuse("joint_speed", given(speed.sample),
            fmt::format("a joint moves at {:.2f} times its speed limit", speed.value));
   }
-  const Worst acceleration = worst(figures.acceleration_ratio);
-  if (acceleration.value > 1) {
+  const bool law_bound = rates.of_law && robot.limits.acceleration;
+  const Worst acceleration =
+      worst(law_bound ? share_of(rates.accelerations, *robot.limits.acceleration) : figures.acceleration_ratio);
+  if (acceleration.value > used_up) {
     refuse("joint_acceleration", given(acceleration.sample),
            fmt::format("a joint accelerates with {:.2f} times its limit", acceleration.value));
   }

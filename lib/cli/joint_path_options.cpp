@@ -32,6 +32,10 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
     }
     if (pose.orientation && pose.rpy) throw UsageError("usage.exclusive", "--orientation and --rpy exclude each other");
     if (request.posture == "-") throw UsageError("usage.posture", "--posture takes a file, not standard input");
+    if (request.retime && request.limits.tcp_acceleration) {
+      throw UsageError("usage.exclusive",
+                       "--retime keeps no limit of the tool tip's acceleration, so it excludes --max-tcp-acceleration");
+    }
     if (request.all && (request.retime || !request.posture.empty())) {
       throw UsageError("usage.exclusive", "--all writes solutions, not a path that --retime or --posture could shape");
     }

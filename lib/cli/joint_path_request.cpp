@@ -73,6 +73,7 @@ class Answer {
     if (request.seed) options_.seed = Eigen::Map<const Joints>(request.seed->data());
     if (!request.posture.empty()) options_.branch = posture_of(request.posture, arm_, run);
     options_.refinements = request.given_rows ? 0 : most_halvings;
+    if (request.retime) options_.curve_rest = at_rest;
   }
 
   void run() {
@@ -162,16 +163,22 @@ class Answer {
     JointPath path = solve_path(arm_, poses, given, options_);
     if (request_.retime && path.joints.rows() > 1) path = moving(recording, path);
     const Vector times = path.times;
-    std::optional<Rates> rates;
-    if (request_.retime && path.joints.rows() > 1) rates = retimed(recording, path);
-    if (!judge(path, recording, arm_.robot(), tool_, request_.limits, run_)) return;
+    double start = 0.0;
+    JointRates rates;
+    if (request_.retime && path.joints.rows() > 1) {
+      // Judged from 0: beside a large time, such as one counted from 1970, the law's would be rounded.
+      start = times[0];
+      rates = retimed(recording, path);
+    } else {
+      rates = rates_along(path);
+    }
+    if (!judge(path, rates, recording, arm_.robot(), tool_, request_.limits, run_)) return;
     if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     warn_of_postures(path, recording);
     report_rows(recording, path);
-    Samples rows = beside(path.times, path.joints);
-    if (!rates) rates = rates_along(path);
-    if (request_.speeds) rows = beside(rows, rates->speeds);
-    if (request_.accelerations) rows = beside(rows, rates->accelerations);
+    Samples rows = beside(path.times.array() + start, path.joints);
+    if (request_.speeds) rows = beside(rows, rates.speeds);
+    if (request_.accelerations) rows = beside(rows, rates.accelerations);
     if (request_.diagnostics) rows = beside(rows, diagnostics(path));
     if (request_.singularities) rows = beside(rows, singularities(path));
     if (!passed_.empty()) {
@@ -180,25 +187,21 @@ class Answer {
     out.write(recording.demonstration.labels, rows);
   }
 
-  /// Of the joints along a path, each T x 6.
-  struct Rates {
-    Samples speeds, accelerations;
-  };
-
   JointPath moving(const Recording& recording, const JointPath& path) {
     JointPath moving = without_rest(path, at_rest);
     const Eigen::Index less = path.joints.rows() - moving.joints.rows();
     if (less > 0) {
       const std::string words = describe(recording.demonstration.labels);
       run_.messages().note("ik.rest_cut",
-                           fmt::format("{}{} rows at rest are left out: nearer than {} rad to the first or last",
-                                       words.empty() ? "" : words + ": ", less, at_rest));
+                           fmt::format("{}{} rows in which the arm rests are left out: within {} rad of the first or "
+                                       "last row, or staying within {} rad between",
+                                       words.empty() ? "" : words + ": ", less, at_rest, at_rest / 10));
     }
     return moving;
   }
 
-  /// Gives the path the times of the fastest motion along it.
-  Rates retimed(const Recording& recording, JointPath& path) {
+  /// Gives the path the times of the fastest motion along it, from 0.
+  JointRates retimed(const Recording& recording, JointPath& path) {
     RetimeOptions options;
     options.velocity = arm_.robot().limits.velocity;
     options.acceleration = *arm_.robot().limits.acceleration;
@@ -207,12 +210,12 @@ class Answer {
     if (!tip_lifted) options.tip_speed = request_.limits.tcp_speed;
     const Retiming law = retime(arm_.robot(), path.joints, options);
     const Vector before = path.times;
-    path.times = law.times().array() + before[0];
+    path.times = law.times();
     const std::string words = describe(recording.demonstration.labels);
     run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", words.empty() ? "" : words + ": ",
                                          law.duration(), before[before.size() - 1] - before[0]));
     run_.figure("duration", law.duration());
-    Rates rates{Samples(path.times.size(), 6), Samples(path.times.size(), 6)};
+    JointRates rates{Samples(path.times.size(), 6), Samples(path.times.size(), 6), true};
     for (Eigen::Index t = 0; t < path.times.size(); ++t) {
       const Retiming::State state = law(law.times()[t]);
       rates.speeds.row(t) = state.velocity.transpose();
@@ -252,8 +255,8 @@ class Answer {
   }
 
   /// By the spline through the joints, so that speeds do not lag half a sample.
-  static Rates rates_along(const JointPath& path) {
-    const Eigen::Index T = path.times.size();
+  static JointRates rates_along(const JointPath& path) {
+    const Eigen::Index T = path.joints.rows();
     if (T < 2) return {Samples::Zero(T, 6), Samples::Zero(T, 6)};
     const CubicSpline spline(path.times, path.joints);
     return {spline.derivative(path.times), spline.second_derivatives()};

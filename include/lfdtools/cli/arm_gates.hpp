@@ -16,6 +16,13 @@ struct ArmLimits {
   double condition_warning = 17;
 };
 
+/// Rates of the joints at the rows of a path, each T x 6.
+struct JointRates {
+  Samples speeds;         ///< [rad/s]
+  Samples accelerations;  ///< [rad/s^2]
+  bool of_law = false;    ///< of the law of motion that retime has found; else of the cubic spline through the rows
+};
+
 /// Declares the gates and the options that set their limits.
 void declare_arm_gates(Program& program, ArmLimits& limits);
 
@@ -23,10 +30,13 @@ void declare_arm_gates(Program& program, ArmLimits& limits);
 /// @throws Error(Fault::gate) gate.start
 void judge_start(const JointPath& path, const Recording& recording, const Joints& current, double tolerance, Run& run);
 
-/// Judges a joint path gate by gate. @return false if there is no path to write (its gate was lifted)
+/// Judges a joint path gate by gate. Joint speeds and accelerations are the law's where there is one. Else speeds are
+/// the larger of those between two rows and the spline's at inner rows, and accelerations second differences, for at
+/// both ends the spline only continues what it has inside, and overshoots there and about them.
+/// @return false if there is no path to write (its gate was lifted)
 /// @throws Error(Fault::gate) gate.unreachable, joint_range, joint_step, joint_speed, joint_acceleration, tcp_speed,
 ///         tcp_acceleration, condition, branch_change, midpoint, posture; the place is the line of the worst sample
-bool judge(const JointPath& path, const Recording& recording, const Robot& robot, const Pose& tool,
-           const ArmLimits& limits, Run& run);
+bool judge(const JointPath& path, const JointRates& rates, const Recording& recording, const Robot& robot,
+           const Pose& tool, const ArmLimits& limits, Run& run);
 
 }  // namespace lfd::cli
