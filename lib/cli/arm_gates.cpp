@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace lfd::cli {
 namespace {
 
@@ -74,7 +76,7 @@ void judge_start(const JointPath& path, const Recording& recording, const Joints
 }
 
 bool judge(const JointPath& path, const JointRates& rates, const Recording& recording, const Robot& robot,
-           const Pose& tool, const ArmLimits& limits, Run& run) {
+           const Pose& tool, const ArmLimits& limits, Run& run, const std::string& elsewhere) {
   const Labels& labels = recording.demonstration.labels;
   const std::string name = describe(labels).empty() ? std::string() : describe(labels) + ": ";
   const auto refuse = [&](std::string_view gate, Eigen::Index sample, const std::string& text) {
@@ -86,7 +88,8 @@ bool judge(const JointPath& path, const JointRates& rates, const Recording& reco
   for (std::size_t k = 1; k < path.branch.size(); ++k) {
     if (path.branch[k] == path.branch[k - 1]) continue;
     refuse("branch_change", path.given[k],
-           fmt::format("the arm changes from {} to {}", branch_name(path.branch[k - 1]), branch_name(path.branch[k])));
+           fmt::format("the arm changes from {} to {}{}", branch_name(path.branch[k - 1]), branch_name(path.branch[k]),
+                       elsewhere));
     break;
   }
   const MotionFigures figures = motion_figures(robot, path.times, path.joints, tool);
@@ -118,8 +121,8 @@ bool judge(const JointPath& path, const JointRates& rates, const Recording& reco
   const Worst condition = worst(path.condition);
   if (condition.value > limits.condition) {
     refuse("condition", given(condition.sample),
-           fmt::format("the condition number is {}, over {:g}: a singularity is near", condition_words(condition.value),
-                       limits.condition));
+           fmt::format("the condition number is {}, over {:g}: a singularity is near{}",
+                       condition_words(condition.value), limits.condition, elsewhere));
   } else if (condition.value > limits.condition_warning) {
     run.messages().warning("ik.condition",
                            fmt::format("{}the largest condition number is {}", name, condition_words(condition.value)),
@@ -130,6 +133,26 @@ bool judge(const JointPath& path, const JointRates& rates, const Recording& reco
   run.figure("tcp_speed", tcp_speed.value);
   run.figure("condition", condition.value);
   return true;
+}
+
+std::string better_posture(const InverseKinematics& arm, const JointPath& path, const std::vector<Pose>& flange,
+                           const Vector& times, const PathOptions& options, const ArmLimits& limits) {
+  const auto passes = [&](const JointPath& other) {
+    return other.status == PathStatus::continuous && other.branch_changes == 0 &&
+           other.condition.maxCoeff() <= limits.condition;
+  };
+  if (path.status != PathStatus::continuous || passes(path) || options.seed || options.branch) return "";
+  double least = std::numeric_limits<double>::infinity();
+  std::string words;
+  for (int branch = 0; branch < 8; ++branch) {
+    PathOptions kept = options;
+    kept.branch = branch;
+    const JointPath other = solve_path(arm, flange, times, kept);
+    if (!passes(other) || other.condition.maxCoeff() >= least) continue;
+    least = other.condition.maxCoeff();
+    words = fmt::format("; in posture {} it is at most {:.3g}: --posture or --seed-joints", branch_name(branch), least);
+  }
+  return words;
 }
 
 }  // namespace lfd::cli

@@ -130,8 +130,8 @@ class Answer {
   }
 
   [[nodiscard]] std::vector<std::string> columns() const {
-    auto columns = joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"},
-                          joint_names);
+    auto columns =
+        joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"}, joint_names);
     if (request_.speeds) columns = joined(columns, speed_names);
     if (request_.accelerations) columns = joined(columns, acceleration_names);
     if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
@@ -172,7 +172,10 @@ class Answer {
     } else {
       rates = rates_along(path);
     }
-    if (!judge(path, rates, recording, arm_.robot(), tool_, request_.limits, run_)) return;
+    if (!judge(path, rates, recording, arm_.robot(), tool_, request_.limits, run_,
+               better_posture(arm_, path, poses, given, options_, request_.limits))) {
+      return;
+    }
     if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     warn_of_postures(path, recording);
     report_rows(recording, path);
@@ -230,12 +233,12 @@ class Answer {
     if (!first_branch_) first_branch_ = branch;
     if (branch == *first_branch_) return;
     const std::string words = describe(recording.demonstration.labels);
-    run_.messages().warning("ik.postures_differ",
-                            fmt::format("{}starts in posture {}, the first path in {}: --seed-joints or --posture hold "
-                                        "them together",
-                                        words.empty() ? "the path " : words + " ", branch_name(branch),
-                                        branch_name(*first_branch_)),
-                            recording.place(0));
+    run_.messages().warning(
+        "ik.postures_differ",
+        fmt::format("{}starts in posture {}, the first path in {}: --seed-joints or --posture hold "
+                    "them together",
+                    words.empty() ? "the path " : words + " ", branch_name(branch), branch_name(*first_branch_)),
+        recording.place(0));
   }
 
   void report_rows(const Recording& recording, const JointPath& path) {

@@ -33,10 +33,19 @@ void judge_start(const JointPath& path, const Recording& recording, const Joints
 /// Judges a joint path gate by gate. Joint speeds and accelerations are the law's where there is one. Else speeds are
 /// the larger of those between two rows and the spline's at inner rows, and accelerations second differences, for at
 /// both ends the spline only continues what it has inside, and overshoots there and about them.
+/// @param elsewhere  words of better_posture, which end the messages of condition and branch_change
 /// @return false if there is no path to write (its gate was lifted)
 /// @throws Error(Fault::gate) gate.unreachable, joint_range, joint_step, joint_speed, joint_acceleration, tcp_speed,
 ///         tcp_acceleration, condition, branch_change, midpoint, posture; the place is the line of the worst sample
 bool judge(const JointPath& path, const JointRates& rates, const Recording& recording, const Robot& robot,
-           const Pose& tool, const ArmLimits& limits, Run& run);
+           const Pose& tool, const ArmLimits& limits, Run& run, const std::string& elsewhere = "");
+
+/// Where a path changes posture or comes near a singularity, words about a posture in which it would not, if there is
+/// one: the least steps, which decide between postures, know nothing of either. Empty where joints or posture are
+/// demanded.
+/// @param flange, times, options  of solve_path
+[[nodiscard]] std::string better_posture(const InverseKinematics& arm, const JointPath& path,
+                                         const std::vector<Pose>& flange, const Vector& times,
+                                         const PathOptions& options, const ArmLimits& limits);
 
 }  // namespace lfd::cli
