@@ -81,19 +81,20 @@ class Retiming::Solver {
     measure_slopes();
     const bool of_rows = options_.of_rows && rows_.size() >= least_rows;
     Retiming best;
-    share_.assign(law_.points_.size(), 1.0);
-    for (int iteration = 0; iteration < (of_rows ? most_iterations : 1); ++iteration) {
+    share_.assign(law_.points_.size() - 1, 1.0);
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
       pass();
       law_.stretch_ = 1.0;
-      double excess = excess_between();
+      const Vector between = excess_between();
       const Vector rows = of_rows ? excess_of_rows() : Vector();
+      double excess = between.maxCoeff();
       if (of_rows) excess = std::max(excess, rows.maxCoeff());
       // Between two points of the finer grid a limit is passed by less than the millionth.
       law_.stretch_ = excess > 1.0 ? excess * (1.0 + 1e-6) : 1.0;
       const auto stretched = [](const Retiming& law) { return law.points_.back().t * law.stretch_; };
       if (iteration == 0 || stretched(law_) < stretched(best)) best = law_;
-      if (excess < 1.002 || !of_rows) break;
-      spread(rows);
+      if (excess < 1.002) break;
+      spread(between, rows);
     }
     set_times(best);
     return best;
@@ -166,8 +167,7 @@ class Retiming::Solver {
     auto& points = law_.points_;
     const std::size_t N = points.size() - 1;
     const auto interval = [&](std::size_t i) {
-      return Interval(slopes_[i], slopes_[i + 1], options_.acceleration * std::min(share_[i], share_[i + 1]),
-                      points[i + 1].s - points[i].s);
+      return Interval(slopes_[i], slopes_[i + 1], options_.acceleration * share_[i], points[i + 1].s - points[i].s);
     };
     std::vector<double> controllable(N + 1, 0.0);
     for (std::size_t i = N; i-- > 0;) controllable[i] = interval(i).largest_begin(slopes_[i].most, controllable[i + 1]);
@@ -178,14 +178,15 @@ class Retiming::Solver {
     }
   }
 
-  /// The stretch that the limits ask for on a grid ten times as fine.
-  [[nodiscard]] double excess_between() const {
-    double excess = 1.0;
-    for (std::size_t i = 0; i + 1 < law_.points_.size(); ++i) {
+  /// The stretch that the limits ask for on a grid ten times as fine, for each interval of the coarser.
+  [[nodiscard]] Vector excess_between() const {
+    Vector excess = Vector::Ones(static_cast<Eigen::Index>(share_.size()));
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      double& most = excess[static_cast<Eigen::Index>(i)];
       for (int tenth = 0; tenth <= 10; ++tenth) {
         const State state = law_.at(law_.points_[i], law_.points_[i + 1], tenth / 10.0);
         const double bend = state.acceleration.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff();
-        excess = std::max({excess, speed_share(state), std::sqrt(bend)});
+        most = std::max({most, speed_share(state), std::sqrt(bend)});
       }
     }
     return excess;
@@ -211,16 +212,21 @@ class Retiming::Solver {
     return excess;
   }
 
-  /// Less acceleration about the knots where the spline through the rows asks for too much.
-  void spread(const Vector& excess) {
-    const auto K = static_cast<std::ptrdiff_t>(rows_.size());
+  /// Less acceleration in the intervals between whose ends it comes to too much, as where a joint turns round, and
+  /// about the knots, if any, where the spline through the rows asks for too much.
+  void spread(const Vector& between, const Vector& rows) {
     std::vector<double> less(share_.size(), 1.0);
-    for (std::ptrdiff_t k = 0; k < K; ++k) {
-      const double over = excess[k] * excess[k];
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      const double excess = between[static_cast<Eigen::Index>(i)];
+      less[i] = 1.0 / (excess * excess);
+    }
+    const Eigen::Index K = rows.size();
+    for (Eigen::Index k = 0; k < K; ++k) {
+      const double over = rows[k] * rows[k];
       if (!(over > 1.0)) continue;
-      const auto begin = at_knot_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, k - 2))];
+      const auto begin = at_knot_[static_cast<std::size_t>(std::max<Eigen::Index>(0, k - 2))];
       const auto end = at_knot_[static_cast<std::size_t>(std::min(K - 1, k + 2))];
-      for (std::size_t i = begin; i <= end; ++i) less[i] = std::min(less[i], 1.0 / over);
+      for (std::size_t i = begin; i < end; ++i) less[i] = std::min(less[i], 1.0 / over);
     }
     for (std::size_t i = 0; i < share_.size(); ++i) share_[i] *= less[i];
   }
@@ -248,7 +254,7 @@ class Retiming::Solver {
   const std::vector<Eigen::Index>& rows_;  // that are knots
   std::vector<std::size_t> at_knot_;       // grid point of each knot
   std::vector<Slope> slopes_;              // of the grid points
-  std::vector<double> share_;              // of the acceleration limits, at the grid points
+  std::vector<double> share_;              // of the acceleration limits, in the grid's intervals
   Retiming law_;
 };
 

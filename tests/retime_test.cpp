@@ -260,3 +260,28 @@ TEST_CASE("paths and limits that cannot be are refused") {
   CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(0.0, 1.0)), UsageError);
   CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(1.0, -1.0)), UsageError);
 }
+
+TEST_CASE("a joint that turns round takes hardly longer than its ways from rest to rest") {
+  const Robot robot = nominal_ur10();
+  double longest = 0.0, longest_of_rows = 0.0, share = 0.0;
+  for (const int turns : {1, 3, 6}) {
+    for (const Eigen::Index T : {97, 150, 400}) {
+      Samples joints = Samples::Zero(T, 6);
+      for (Eigen::Index t = 0; t < T; ++t) {
+        joints(t, 0) = 0.8 * std::cos(turns * pi * static_cast<double>(t) / static_cast<double>(T - 1));
+      }
+      RetimeOptions options = limits(2.0, 1.4);
+      const double bound = turns * fastest(1.6, 2.0, 1.4);
+      const double of_rows = retime(robot, joints, options).duration() / bound;
+      options.of_rows = false;
+      const Retiming law = retime(robot, joints, options);
+      share = std::max(share, largest_share(law, options));
+      longest = std::max(longest, law.duration() / bound);
+      longest_of_rows = std::max(longest_of_rows, of_rows);
+    }
+  }
+  INFO("longest, as a factor of the bound: " << longest << ", with the spline through the rows " << longest_of_rows);
+  CHECK(share <= 1.0 + 1e-9);
+  CHECK(longest < 1.04);
+  CHECK(longest_of_rows < 1.06);
+}
