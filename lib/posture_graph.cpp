@@ -101,7 +101,7 @@ class Graph {
       largest = std::max(largest, step);
     }
     e.ratio = e.seconds / dt + (largest > options_.max_step ? jump_cost : 0.0);
-    e.changes_branch = from.branch != to.branch;
+    e.changes_branch = ((from.branch ^ to.branch) & ~(from.border | to.border)) != 0;
     return e;
   }
 

@@ -13,6 +13,7 @@ namespace lfd {
 struct Posture {
   Joints joints = Joints::Zero();  ///< [rad], each stands for all angles that differ by whole turns
   int branch = 0;
+  int border = 0;  ///< bits of the branch that are on either side, see border_bits
 };
 
 /// What decides between ways through the graph, see best_way.
@@ -36,7 +37,7 @@ struct Way {
 /// - the start nearest to the seed, if there is one (sum of squares of joint differences over speed limits), of those
 ///   from which a way without jumps goes on;
 /// - the largest joint speed over its limit: smallest possible up to step_slack;
-/// - fewest jumps, then fewest changes of branch;
+/// - fewest jumps, then fewest changes of branch, those to or from a border aside;
 /// - least sum over time of the largest joint motion over its speed limit [s];
 /// - smallest start angles (sum of squares), lowest indices.
 /// Successive angles differ by at most half a turn.
