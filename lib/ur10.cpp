@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "lfdtools/error.hpp"
 #include "ur10_closed_form.hpp"
@@ -57,11 +58,14 @@ class CalibratedSolutions {
     const Edges limits = edges(q6, tolerance_ / 10.0);
     const ClosedForm closed(g_, flange_, limits);
     for (std::size_t i = 0; i < closed.count; ++i) add(joints_of(g_, closed.candidates[i]));
+    // Asked with q6 free, for the exact arm's own q6 need not let the elbow close.
+    const Edges wide = edges(q6, near_wrist);
+    const ClosedForm around(g_, flange_, wide);
     for (const int shoulder : {0, 4}) {
       const auto near = [&](const Candidate& candidate) {
-        return (candidate.branch & 4) == shoulder && std::abs(candidate.q[4].s) < near_wrist;
+        return (candidate.branch & 4) == shoulder && candidate.wrist_free;
       };
-      if (std::none_of(closed.candidates.begin(), closed.candidates.begin() + closed.count, near)) continue;
+      if (std::none_of(around.candidates.begin(), around.candidates.begin() + around.count, near)) continue;
       for (const int elbow : {0, 1}) search_q6(shoulder + elbow);
     }
     std::stable_sort(found_.solutions.begin(), found_.solutions.begin() + found_.count,
@@ -104,11 +108,19 @@ class CalibratedSolutions {
 
   void search_q6(int arm_branch) {
     constexpr double step = 2.0 * std::numbers::pi / steps_of_q6;
-    std::array<std::optional<Tilted>, steps_of_q6> around;
-    for (std::size_t k = 0; k < steps_of_q6; ++k) around[k] = at_q6(arm_branch, static_cast<double>(k) * step);
-    for (std::size_t k = 0; k < steps_of_q6; ++k) {
+    std::vector<std::optional<Tilted>> around;  // nothing where the elbow does not close
+    for (int k = 0; k < steps_of_q6; ++k) {
+      auto here = at_q6(arm_branch, k * step);
+      if (k > 0 && here.has_value() != around.back().has_value()) {
+        const Tilted edge =
+            here ? edge_of_reach(arm_branch, *here, -step) : edge_of_reach(arm_branch, *around.back(), step);
+        around.emplace_back(edge);
+      }
+      around.push_back(std::move(here));
+    }
+    for (std::size_t k = 0; k < around.size(); ++k) {
       const auto& here = around[k];
-      const auto &next = around[(k + 1) % steps_of_q6], &last = around[(k + steps_of_q6 - 1) % steps_of_q6];
+      const auto &next = around[(k + 1) % around.size()], &last = around[(k + around.size() - 1) % around.size()];
       if (!here || !next) continue;
       if (differ(*here, *next)) {
         add(between(arm_branch, *here, *next));
@@ -116,6 +128,16 @@ class CalibratedSolutions {
         search_dip(arm_branch, *last, *here, *next);
       }
     }
+  }
+
+  /// The last q6 for which the elbow closes, on the way from one for which it does to one for which it does not.
+  [[nodiscard]] Tilted edge_of_reach(int arm_branch, const Tilted& from, double step) const {
+    Tilted edge = from;
+    for (int halving = 0; halving < 10; ++halving) {
+      step *= 0.5;
+      if (const auto further = at_q6(arm_branch, edge.q6 + step)) edge = *further;
+    }
+    return edge;
   }
 
   /// Two solutions may hide where the tilt comes near zero and goes back.
