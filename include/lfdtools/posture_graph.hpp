@@ -40,7 +40,9 @@ struct Way {
 /// - fewest jumps, then fewest changes of branch, those to or from a border aside;
 /// - least sum over time of the largest joint motion over its speed limit [s];
 /// - smallest start angles (sum of squares), lowest indices.
-/// Successive angles differ by at most half a turn.
+/// Successive angles differ by at most half a turn. Of joints that some way takes out of their ranges, whole turns as
+/// far from the seed (without one: from zero) are looked at as ways wind, so that ranges of any width will do; where
+/// several such ranges are wider than arms have them, fewer, up to 1024 combinations.
 /// @param layers  T >= 1, none of them empty
 /// @param times   T, strictly rising [s]
 [[nodiscard]] Way best_way(const std::vector<std::vector<Posture>>& layers, const Vector& times,
