@@ -235,7 +235,9 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
 
   std::vector<std::vector<Posture>> postures(layers.size());
   for (std::size_t t = 0; t < layers.size(); ++t) {
-    for (const IkSolution& solution : layers[t]) postures[t].push_back({solution.joints, solution.branch});
+    for (const IkSolution& solution : layers[t]) {
+      postures[t].push_back({solution.joints, solution.branch, options.branch ? 0 : border_bits(arm, solution.joints)});
+    }
   }
   Way way = best_way(postures, path.times, robot.limits,
                      {options.seed, options.max_step, options.step_slack, options.respect_limits});
@@ -251,11 +253,10 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
   path.residual = Vector::Zero(T);
   path.condition = Vector::Zero(T);
   path.midpoint_deviation = Vector::Zero(T);
+  path.branch = options.branch ? std::vector<int>(layers.size(), *options.branch) : branches_along(arm, path.joints);
   for (Eigen::Index t = 0; t < T; ++t) {
     const auto i = static_cast<std::size_t>(t);
     const Joints q = path.joints.row(t).transpose();
-    const IkSolution& solution = layers[i][static_cast<std::size_t>(way.posture[i])];
-    path.branch.push_back(solution.branch);
     path.residual[t] = distance(forward_kinematics(robot, q), flange[i]).largest();
     path.condition[t] = condition_number(jacobian(robot, q));
     if (t == 0) continue;

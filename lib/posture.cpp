@@ -53,12 +53,34 @@ DemonstratedPosture demonstrated_posture(const InverseKinematics& arm, const std
   return posture;
 }
 
+int border_bits(const InverseKinematics& arm, const Joints& q) {
+  const SingularityDistances d = singularity_distances(arm.geometry(), q);
+  return (d.shoulder < border ? 4 : 0) + (d.wrist < border_wrist ? 2 : 0) + (d.elbow < border ? 1 : 0);
+}
+
 bool keeps_branch(const InverseKinematics& arm, const Joints& q, int branch) {
   const int other = arm.branch(q) ^ branch;
-  if (other == 0) return true;
-  const SingularityDistances d = singularity_distances(arm.geometry(), q);
-  return ((other & 4) == 0 || d.shoulder < border) && ((other & 2) == 0 || d.wrist < border_wrist) &&
-         ((other & 1) == 0 || d.elbow < border);
+  return other == 0 || (other & ~border_bits(arm, q)) == 0;
+}
+
+std::vector<int> branches_along(const InverseKinematics& arm, const Samples& joints) {
+  const auto T = static_cast<std::size_t>(joints.rows());
+  std::vector<int> branches(T), borders(T);
+  for (std::size_t t = 0; t < T; ++t) {
+    const Joints q = joints.row(static_cast<Eigen::Index>(t)).transpose();
+    branches[t] = arm.branch(q);
+    borders[t] = border_bits(arm, q);
+  }
+  for (const int bit : {4, 2, 1}) {
+    const auto decided = std::find_if(borders.begin(), borders.end(), [&](int bits) { return (bits & bit) == 0; });
+    const auto first = decided == borders.end() ? 0 : static_cast<std::size_t>(decided - borders.begin());
+    int side = T > 0 ? branches[first] & bit : 0;
+    for (std::size_t t = 0; t < T; ++t) {
+      if ((borders[t] & bit) == 0) side = branches[t] & bit;
+      branches[t] = (branches[t] & ~bit) | side;
+    }
+  }
+  return branches;
 }
 
 }  // namespace lfd

@@ -27,8 +27,13 @@ struct Edge {
   [[nodiscard]] bool jumps() const { return ratio >= jump_cost; }
 };
 
-/// A posture with the range of whole turns that each joint has; a state is a posture and one value of each, numbered in
-/// mixed radix. Without limits every posture is one state and turns are not counted.
+/// States of one posture at most; ranges of two turns either way, which arms have, take up to 3^6.
+constexpr double most_states = 1024.0;
+/// Turns further out are not counted: they have no digits left for the angle.
+constexpr double most_turns = 1e9;
+
+/// A posture with the whole turns that each joint may have; a state is a posture and one value of each, numbered in
+/// mixed radix. A joint whose turns are not counted has one.
 struct Node {
   std::array<int, 6> low{};
   std::array<int, 6> count{1, 1, 1, 1, 1, 1};
@@ -50,16 +55,22 @@ class Graph {
     }
   }
 
-  /// The best way through. Without `counting`, ranges are left aside until the end, and there is no answer if the way
-  /// leaves them. With it, every whole turn within the ranges is a state of its own, 64 times the work.
-  [[nodiscard]] std::optional<Way> solve(bool counting) {
-    counting_ = counting;
-    number_states();
-    const Starts starts = choose_starts(bottlenecks());
-    return starts.states.empty() ? std::nullopt : trace(starts);
+  /// The best way through, ranges left aside until the end, and there is no answer if the way leaves them.
+  [[nodiscard]] std::optional<Way> solve() {
+    counted_.fill(false);
+    jumping_ = true;
+    return best();
   }
 
-  /// First layer that no way within the limits comes to, after solve(true) has failed.
+  /// The best way within the ranges, whole turns being states of their own. Ways without jumps come first and turn far
+  /// less, so without `jumping` only they are looked at.
+  [[nodiscard]] std::optional<Way> solve_counting(bool jumping) {
+    jumping_ = jumping;
+    choose_turns();
+    return best();
+  }
+
+  /// First layer that no way within the limits comes to, after solve_counting(true) has failed.
   [[nodiscard]] Eigen::Index blocked() const {
     std::vector<char> reached(states_[0], 1);
     std::size_t t = 0;
@@ -101,8 +112,79 @@ class Graph {
       largest = std::max(largest, step);
     }
     e.ratio = e.seconds / dt + (largest > options_.max_step ? jump_cost : 0.0);
-    e.changes_branch = from.branch != to.branch;
+    e.changes_branch = ((from.branch ^ to.branch) & ~(from.border | to.border)) != 0;
     return e;
+  }
+
+  [[nodiscard]] std::optional<Way> best() {
+    number_states();
+    const Starts starts = choose_starts(bottlenecks());
+    return starts.states.empty() ? std::nullopt : trace(starts);
+  }
+
+  /// From the start turn nearest to the seed (or zero), how far down and up any way takes a joint [rad].
+  [[nodiscard]] std::pair<double, double> reach_of(Eigen::Index j, double centre) const {
+    double down = infinity, up = -infinity;
+    std::vector<std::pair<double, double>> turns;  // fewest and most of each posture; none yet: the first above
+    for (const Posture& posture : layers_[0]) {
+      const double n = std::nearbyint((centre - posture.joints[j]) / turn);
+      turns.emplace_back(n, n);
+    }
+    for (std::size_t t = 0; t < layers_.size(); ++t) {
+      if (t > 0) {
+        std::vector<std::pair<double, double>> next(layers_[t].size(), {infinity, -infinity});
+        for (std::size_t k = 0; k < edges_[t].size(); ++k) {
+          const Edge& e = edges_[t][k];
+          const auto& from = turns[k / next.size()];
+          if (e.jumps() && !jumping_) continue;
+          auto& to = next[k % next.size()];
+          to.first = std::min(to.first, from.first + e.turns[static_cast<std::size_t>(j)]);
+          to.second = std::max(to.second, from.second + e.turns[static_cast<std::size_t>(j)]);
+        }
+        turns = std::move(next);
+      }
+      for (std::size_t i = 0; i < turns.size(); ++i) {
+        down = std::min(down, layers_[t][i].joints[j] + turn * turns[i].first);
+        up = std::max(up, layers_[t][i].joints[j] + turn * turns[i].second);
+      }
+    }
+    return {down, up};
+  }
+
+  /// A joint that no way takes out of its range needs no turns counted: its start is the one nearest to the seed. The
+  /// others are looked at as many turns from there as a way could need, fewer if that would be too many states.
+  void choose_turns() {
+    range_ = limits_.position;
+    std::array<double, 6> centre{}, width{};
+    for (std::size_t j = 0; j < 6; ++j) {
+      const auto row = static_cast<Eigen::Index>(j);
+      const double wanted = options_.seed ? (*options_.seed)[row] : 0.0;
+      const auto [down, up] = reach_of(row, wanted);
+      counted_[j] = !(down >= limits_.position(row, 0) && up <= limits_.position(row, 1));
+      if (!counted_[j]) continue;
+      centre[j] = std::clamp(wanted, limits_.position(row, 0), limits_.position(row, 1));
+      width[j] = up >= down ? 2.0 * std::ceil((up - down) / turn) + 3.0 : 0.0;  // turns either way
+      width[j] = std::min(width[j], most_states);
+    }
+    const auto narrow = [&](std::size_t j) {
+      const auto row = static_cast<Eigen::Index>(j);
+      range_(row, 0) = std::max(limits_.position(row, 0), centre[j] - turn * width[j]);
+      range_(row, 1) = std::min(limits_.position(row, 1), centre[j] + turn * width[j]);
+      return std::floor((range_(row, 1) - range_(row, 0)) / turn) + 1.0;
+    };
+    while (true) {
+      double states = 1.0, most = 0.0;
+      std::size_t widest = 0;
+      for (std::size_t j = 0; j < 6; ++j) {
+        if (!counted_[j]) continue;
+        const double count = narrow(j);
+        states *= count;
+        if (count > most) widest = j;
+        most = std::max(most, count);
+      }
+      if (states <= most_states) return;
+      width[widest] -= width[widest] > 1.0 ? 1.0 : 0.25;
+    }
   }
 
   void number_states() {
@@ -112,11 +194,14 @@ class Graph {
       for (const Posture& posture : layers_[t]) {
         Node node;
         node.first = states_[t];
-        for (std::size_t j = 0; counting_ && j < 6; ++j) {
+        for (std::size_t j = 0; j < 6; ++j) {
+          if (!counted_[j]) continue;
           const auto row = static_cast<Eigen::Index>(j);
-          node.low[j] = static_cast<int>(std::ceil((limits_.position(row, 0) - posture.joints[row]) / turn));
-          const int high = static_cast<int>(std::floor((limits_.position(row, 1) - posture.joints[row]) / turn));
-          node.count[j] = std::max(0, high - node.low[j] + 1);
+          const double low = std::ceil((range_(row, 0) - posture.joints[row]) / turn);
+          const double high = std::floor((range_(row, 1) - posture.joints[row]) / turn);
+          node.low[j] = static_cast<int>(std::clamp(low, -most_turns, most_turns));
+          node.count[j] =
+              std::abs(low) > most_turns ? 0 : static_cast<int>(std::clamp(high - low + 1.0, 0.0, most_turns));
           node.states *= static_cast<std::size_t>(node.count[j]);
         }
         states_[t] += node.states;
@@ -144,6 +229,7 @@ class Graph {
         const auto turns = turns_of(from, state);
         for (std::size_t k = 0; k < nodes_[t].size(); ++k) {
           const Edge& e = edges_[t][i * nodes_[t].size() + k];
+          if (e.jumps() && !jumping_) continue;
           if (const auto number = state_after(turns, e, nodes_[t][k])) visit(from.first + state, *number, e);
         }
       }
@@ -152,9 +238,9 @@ class Graph {
 
   [[nodiscard]] std::optional<std::size_t> state_after(const std::array<int, 6>& turns, const Edge& e,
                                                        const Node& to) const {
-    if (!counting_) return to.first;
     int number = 0, radix = 1;
     for (std::size_t j = 0; j < 6; ++j) {
+      if (!counted_[j]) continue;
       const int digit = turns[j] + e.turns[j] - to.low[j];
       if (digit < 0 || digit >= to.count[j]) return std::nullopt;
       number += radix * digit;
@@ -185,11 +271,13 @@ class Graph {
   [[nodiscard]] Joints start_joints(std::size_t state) const {
     const std::size_t i = posture_of(0, state);
     Joints q = layers_[0][i].joints;
-    if (counting_) {
-      const auto turns = turns_of(nodes_[0][i], state - nodes_[0][i].first);
-      for (int j = 0; j < 6; ++j) q[j] += turn * turns[static_cast<std::size_t>(j)];
-    } else if (options_.seed) {
-      for (int j = 0; j < 6; ++j) q[j] += turn * std::nearbyint(((*options_.seed)[j] - q[j]) / turn);
+    const auto turns = turns_of(nodes_[0][i], state - nodes_[0][i].first);
+    for (int j = 0; j < 6; ++j) {
+      if (counted_[static_cast<std::size_t>(j)]) {
+        q[j] += turn * turns[static_cast<std::size_t>(j)];
+      } else if (options_.seed) {
+        q[j] += turn * std::nearbyint(((*options_.seed)[j] - q[j]) / turn);
+      }
     }
     return q;
   }
@@ -250,7 +338,8 @@ class Graph {
       if (t > 0) state = previous[t][state];
     }
     unwind(way, start_joints(state));
-    if (!counting_ && options_.respect_limits && !fit(way)) return std::nullopt;
+    const bool counting = std::find(counted_.begin(), counted_.end(), true) != counted_.end();
+    if (!counting && options_.respect_limits && !fit(way)) return std::nullopt;
     return way;
   }
 
@@ -280,7 +369,9 @@ class Graph {
   const Layers& layers_;
   const JointLimits& limits_;
   const GraphOptions& options_;
-  bool counting_ = false;
+  bool jumping_ = true;                   // steps that are jumps are looked at
+  std::array<bool, 6> counted_{};         // joints whose whole turns are states of their own
+  Eigen::Matrix<double, 6, 2> range_;     // of their turns, within limits_.position [rad]
   std::vector<std::vector<Edge>> edges_;  // [t][from * postures of t + to]
   std::vector<std::vector<Node>> nodes_;
   std::vector<std::size_t> states_;
@@ -291,8 +382,9 @@ class Graph {
 Way best_way(const std::vector<std::vector<Posture>>& layers, const Vector& times, const JointLimits& limits,
              const GraphOptions& options) {
   Graph graph(layers, times, limits, options);
-  if (auto way = graph.solve(false)) return *std::move(way);
-  if (auto way = graph.solve(true)) return *std::move(way);
+  if (auto way = graph.solve()) return *std::move(way);
+  if (auto way = graph.solve_counting(false)) return *std::move(way);
+  if (auto way = graph.solve_counting(true)) return *std::move(way);
   return {{}, {}, 0.0, graph.blocked()};
 }
 

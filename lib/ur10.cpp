@@ -1,182 +1,18 @@
 #include "lfdtools/ur10.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "lfdtools/error.hpp"
+#include "ur10_closed_form.hpp"
 
 namespace lfd {
 namespace {
-
-/// An angle by its sine and cosine.
-struct Turn {
-  double s = 0.0;
-  double c = 1.0;
-};
-
-Turn operator+(const Turn& a, const Turn& b) {
-  return {a.s * b.c + a.c * b.s, a.c * b.c - a.s * b.s};
-}
-Turn operator-(const Turn& a, const Turn& b) {
-  return {a.s * b.c - a.c * b.s, a.c * b.c + a.s * b.s};
-}
-Turn turn_of(double angle) {
-  return {std::sin(angle), std::cos(angle)};
-}
-double angle_of(const Turn& t) {
-  return std::atan2(t.s, t.c);
-}
-
-/// The angle of the point (c, s); 0 for the origin, where any angle would do.
-Turn direction(double s, double c) {
-  const double length = std::sqrt(s * s + c * c);
-  return length > 0.0 ? Turn{s / length, c / length} : Turn{};
-}
-
-/// wrap_angle for |angle| < 3 pi, without the cost of a remainder.
-double wrap_once(double angle) {
-  constexpr double pi = std::numbers::pi;
-  return angle > pi ? angle - 2.0 * pi : angle <= -pi ? angle + 2.0 * pi : angle;
-}
-
-struct Candidate {
-  std::array<Turn, 6> q;
-  int branch = 0;
-  bool wrist_free = false;
-};
-
-/// Two roots that differ less than this from a double one count as one: rounding moves them that far apart when a
-/// second singularity is near. In units of the arm's reach; in the angles it is 3e-7 rad for q1 and the stretched
-/// elbow, less for the folded one.
-constexpr double double_root = 5e-14;
-
-/// What the closed form may do at its edges.
-struct Edges {
-  double q6_wanted = 0.0;   ///< [rad], angle of the exact arm
-  double wrist_free = 0.0;  ///< sin q5 up to which q6 is free
-  double reach = 0.0;       ///< how far out of reach is still clamped [m]; the caller verifies
-  double apart = 0.0;       ///< least sine between two roots: 0, or for a calibrated arm some distance from the double
-                            ///< root, whose Jacobian is singular and where its own roots may be two
-};
-
-/// Closed form for the exact arm. In frame 1 (x level, y up, z along joint 2) the arm of joints 2, 3, 4 is planar, and
-/// M = R01^T R = Rz(q2 + q3 + q4) Ry(-q5) Rz(q6).
-class ClosedForm {
- public:
-  ClosedForm(const UrGeometry& geometry, const Pose& pose, const Edges& edges)
-      : g(geometry), R(pose.rotation), p(pose.position), p5(p - g.d6 * R.col(2)), limits(edges) {
-    solve();
-  }
-
-  std::array<Candidate, 8> candidates;
-  std::size_t count = 0;
-
- private:
-  void solve() {
-    // The wrist centre p5 keeps the distance d4 from the vertical plane of the arm: r sin(q1 - azimuth) = d4.
-    const double r = std::sqrt(p5.x() * p5.x() + p5.y() * p5.y());
-    const double d = std::abs(g.d4);
-    if (d - r > limits.reach) return;
-    const Turn azimuth = direction(p5.y(), p5.x());
-    const double sine = r > d ? g.d4 / r : std::copysign(1.0, g.d4);
-    double cosine_squared = r > d ? (r - d) * (r + d) / (r * r) : 0.0;
-    cosine_squared = std::max(cosine_squared, limits.apart * limits.apart);
-    if (cosine_squared < double_root) {
-      solve_wrist(azimuth + Turn{std::copysign(1.0, sine), 0.0}, 0);
-      return;
-    }
-    const double cosine = std::sqrt(cosine_squared);
-    solve_wrist(azimuth + direction(sine, cosine), 0);
-    solve_wrist(azimuth + direction(sine, -cosine), 4);
-  }
-
-  void solve_wrist(const Turn& q1, int branch) {
-    // Rows of M without its second, which is the third of R.
-    const auto m0 = [&](int i) { return q1.c * R(0, i) + q1.s * R(1, i); };
-    const auto m2 = [&](int i) { return q1.s * R(0, i) - q1.c * R(1, i); };
-    const Vector3 M0(m0(0), m0(1), m0(2)), M1(R(2, 0), R(2, 1), R(2, 2)), M2(m2(0), m2(1), m2(2));
-    const double X = q1.c * p5.x() + q1.s * p5.y(), Y = p5.z() - g.d1;
-
-    const double s5 = std::sqrt(M2[0] * M2[0] + M2[1] * M2[1]);  // M2 = (s5 c6, -s5 s6, c5)
-    const auto sum_of_234 =
-        [&](const Turn& q6) {  // second column of M Rz(-q6) is (-s234, c234, 0): always well conditioned
-          return direction(-(M0[0] * q6.s + M0[1] * q6.c), M1[0] * q6.s + M1[1] * q6.c);
-        };
-    if (s5 > limits.wrist_free) {
-      const Turn q6{-M2[1] / s5, M2[0] / s5};
-      const Turn q234 = sum_of_234(q6);
-      solve_elbow(X, Y, {q1, {}, {}, q234, direction(s5, M2[2]), q6}, branch, false);
-      solve_elbow(X, Y, {q1, {}, {}, {-q234.s, -q234.c}, direction(-s5, M2[2]), {-q6.s, -q6.c}}, branch + 2, false);
-      return;
-    }
-    // Axes 4 and 6 are parallel: only q234 + q6 (q5 = 0) or q234 - q6 (q5 = pi) is determined.
-    const double sense = M2[2] > 0.0 ? -1.0 : 1.0;
-    const double q234_at_zero = angle_of(sum_of_234({}));
-    const double q234_wanted = q234_at_zero + sense * limits.q6_wanted;
-    const Turn q6 = turn_of(sense * (nearest_feasible(X, Y, q234_wanted) - q234_at_zero));
-    const double signed_s5 = M2[0] * q6.c - M2[1] * q6.s;  // the part of the small tilt that q5 can take
-    const Turn q5 = direction(signed_s5, M2[2]);
-    solve_elbow(X, Y, {q1, {}, {}, sum_of_234(q6), q5, q6}, branch + (q5.s < 0.0 ? 2 : 0), true);
-  }
-
-  /// The value of q2 + q3 + q4 nearest to the wanted one for which the elbow triangle closes. With (X, Y) at distance
-  /// rho and angle theta, the squared distance to joint 4 is rho^2 + d5^2 - 2 d5 rho sin(q234 - theta).
-  [[nodiscard]] double nearest_feasible(double X, double Y, double wanted) const {
-    const double rho = std::sqrt(X * X + Y * Y), theta = std::atan2(Y, X);
-    const double scale = 2.0 * g.d5 * rho;
-    if (scale == 0.0) return wanted;
-    const double inner = std::abs(std::abs(g.a2) - std::abs(g.a3)), outer = std::abs(g.a2) + std::abs(g.a3);
-    const double squares = rho * rho + g.d5 * g.d5;
-    const std::array<double, 2> bounds = {(squares - outer * outer) / scale, (squares - inner * inner) / scale};
-    const double low = std::min(bounds[0], bounds[1]), high = std::max(bounds[0], bounds[1]);
-    const double sine = std::sin(wanted - theta);
-    if (sine >= low && sine <= high) return wanted;
-    const double edge = std::asin(std::clamp(sine < low ? low : high, -1.0, 1.0));
-    const double a = theta + edge, b = theta + std::numbers::pi - edge;
-    return std::abs(wrap_angle(a - wanted)) <= std::abs(wrap_angle(b - wanted)) ? a : b;
-  }
-
-  /// q[3] holds q2 + q3 + q4 on entry.
-  void solve_elbow(double X, double Y, std::array<Turn, 6> q, int branch, bool free) {
-    const Turn q234 = q[3];
-    const double x = X - g.d5 * q234.s, y = Y + g.d5 * q234.c;  // joint 4, seen from joint 2
-    const double rho = std::sqrt(x * x + y * y);
-    const double straight = g.a2 + g.a3, folded = g.a2 - g.a3;
-    const double outer = std::max(std::abs(straight), std::abs(folded)),
-                 inner = std::min(std::abs(straight), std::abs(folded));
-    if (rho - outer > limits.reach || inner - rho > limits.reach) return;
-    // Factored, so that 1 -+ cos q3 keep their digits near the stretched and the folded arm.
-    const double twice = 2.0 * g.a2 * g.a3;
-    const double below_one = (std::abs(straight) - rho) * (std::abs(straight) + rho) / twice;  // 1 - cos q3
-    const double above_minus = (rho - std::abs(folded)) * (rho + std::abs(folded)) / twice;    // 1 + cos q3
-    double sine = std::sqrt(std::max(0.0, below_one) * std::max(0.0, above_minus));
-    double cosine = below_one < above_minus ? 1.0 - below_one : above_minus - 1.0;
-    sine = std::max(sine, limits.apart);
-    // The folded arm turns the shoulder outer / inner times as far as the elbow, hence rho.
-    const bool is_double = limits.apart == 0.0 && std::min(below_one, above_minus) <= double_root * rho / outer;
-    if (is_double) {
-      sine = 0.0;
-      cosine = below_one < above_minus ? 1.0 : -1.0;
-    }
-    for (const int elbow : {0, 1}) {
-      if (elbow == 1 && is_double) break;
-      q[2] = direction(elbow == 0 ? sine : -sine, cosine);
-      const double along = g.a2 + g.a3 * q[2].c, across = g.a3 * q[2].s;
-      q[1] = direction(y * along - x * across, x * along + y * across);
-      q[3] = q234 - (q[1] + q[2]);
-      candidates[count++] = {q, branch + elbow, free};
-    }
-  }
-
-  const UrGeometry& g;
-  const Matrix3& R;
-  const Vector3& p;
-  const Vector3 p5;
-  const Edges& limits;
-};
 
 /// Forward kinematics of the exact arm from sines and cosines: the angles handed out are their arc tangents, one
 /// rounding away.
@@ -198,6 +34,170 @@ Pose exact_pose(const UrGeometry& g, const std::array<Turn, 6>& q) {
   pose.position += g.d6 * pose.rotation.col(2);
   return pose;
 }
+
+Joints joints_of(const UrGeometry& g, const Candidate& candidate) {
+  Joints q;
+  for (int j = 0; j < 6; ++j) q[j] = wrap_once(angle_of(candidate.q[static_cast<std::size_t>(j)]) - g.offset[j]);
+  return q;
+}
+
+/// |sin q5| of the nearest exact arm up to which a calibrated one may have its solutions at any q6: its axes 4 and 6
+/// differ from those of the exact arm by some milliradians, and where they are parallel that alone decides on q6.
+constexpr double near_wrist = 0.03;
+constexpr int steps_of_q6 = 32;  ///< over the whole turn
+
+/// The solutions of a calibrated arm, by Newton steps from those of the nearest exact arm and, where the wrist of that
+/// is nearly singular, from wherever q6 solves the calibrated one.
+class CalibratedSolutions {
+ public:
+  CalibratedSolutions(const InverseKinematics& arm, const Pose& flange, double tolerance)
+      : arm_(arm), g_(arm.geometry()), flange_(flange), tolerance_(tolerance) {}
+
+  /// @param q6  wanted where it is free [rad], angle of the exact arm
+  IkSolutions solve(double q6) {
+    const Edges limits = edges(q6, tolerance_ / 10.0);
+    const ClosedForm closed(g_, flange_, limits);
+    for (std::size_t i = 0; i < closed.count; ++i) add(joints_of(g_, closed.candidates[i]));
+    // Asked with q6 free, for the exact arm's own q6 need not let the elbow close.
+    const Edges wide = edges(q6, near_wrist);
+    const ClosedForm around(g_, flange_, wide);
+    for (const int shoulder : {0, 4}) {
+      const auto near = [&](const Candidate& candidate) {
+        return (candidate.branch & 4) == shoulder && candidate.wrist_free;
+      };
+      if (std::none_of(around.candidates.begin(), around.candidates.begin() + around.count, near)) continue;
+      for (const int elbow : {0, 1}) search_q6(shoulder + elbow);
+    }
+    std::stable_sort(found_.solutions.begin(), found_.solutions.begin() + found_.count,
+                     [](const IkSolution& a, const IkSolution& b) { return a.branch < b.branch; });
+    return found_;
+  }
+
+ private:
+  /// Joints with a given q6 that reach the pose but for a tilt that joint 5 would take if q6 were another.
+  struct Tilted {
+    Joints joints = Joints::Zero();
+    double q6 = 0.0;    ///< [rad], angle of the exact arm
+    double tilt = 0.0;  ///< [rad], signed: zero is a solution
+  };
+
+  [[nodiscard]] static Edges edges(double q6, double wrist_free) { return {q6, wrist_free, 0.05, 0.05}; }
+
+  /// The pose is corrected by what the exact arm differs from the calibrated one at the joints found, and solved again.
+  [[nodiscard]] std::optional<Tilted> at_q6(int arm_branch, double q6) const {
+    Tilted tilted;
+    tilted.q6 = q6;
+    Pose corrected = flange_;
+    for (int pass = 0; pass < 3; ++pass) {
+      const Edges limits = edges(q6, 2.0 * near_wrist);
+      const ClosedForm closed(g_, corrected, limits);
+      const auto* end = closed.candidates.data() + closed.count;
+      const auto* own = std::find_if(closed.candidates.data(), end, [&](const Candidate& candidate) {
+        return candidate.wrist_free && (candidate.branch & 5) == arm_branch;
+      });
+      // Where the elbow does not close with this q6, the closed form takes another.
+      if (own == end || std::abs(wrap_angle(angle_of(own->q[5]) - q6)) > 1e-6) return std::nullopt;
+      tilted.joints = joints_of(g_, *own);
+      const Pose reached = forward_kinematics(arm_.robot(), tilted.joints);
+      corrected = flange_ * inverse(reached) * exact_pose(g_, own->q);
+      const Vector3 off = vector_from_rotation(reached.rotation.transpose() * flange_.rotation);
+      tilted.tilt = own->q[5].c * off.x() - own->q[5].s * off.y();
+    }
+    return tilted;
+  }
+
+  void search_q6(int arm_branch) {
+    constexpr double step = 2.0 * std::numbers::pi / steps_of_q6;
+    std::vector<std::optional<Tilted>> around;  // nothing where the elbow does not close
+    for (int k = 0; k < steps_of_q6; ++k) {
+      auto here = at_q6(arm_branch, k * step);
+      if (k > 0 && here.has_value() != around.back().has_value()) {
+        const Tilted edge =
+            here ? edge_of_reach(arm_branch, *here, -step) : edge_of_reach(arm_branch, *around.back(), step);
+        around.emplace_back(edge);
+      }
+      around.push_back(std::move(here));
+    }
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      const auto& here = around[k];
+      const auto &next = around[(k + 1) % around.size()], &last = around[(k + around.size() - 1) % around.size()];
+      if (!here || !next) continue;
+      if (differ(*here, *next)) {
+        add(between(arm_branch, *here, *next));
+      } else if (last && !differ(*last, *here)) {
+        search_dip(arm_branch, *last, *here, *next);
+      }
+    }
+  }
+
+  /// The last q6 for which the elbow closes, on the way from one for which it does to one for which it does not.
+  [[nodiscard]] Tilted edge_of_reach(int arm_branch, const Tilted& from, double step) const {
+    Tilted edge = from;
+    for (int halving = 0; halving < 10; ++halving) {
+      step *= 0.5;
+      if (const auto further = at_q6(arm_branch, edge.q6 + step)) edge = *further;
+    }
+    return edge;
+  }
+
+  /// Two solutions may hide where the tilt comes near zero and goes back.
+  void search_dip(int arm_branch, Tilted low, Tilted middle, Tilted high) {
+    for (int i = 0; i < 4; ++i) {
+      const double left = std::abs(low.tilt) - std::abs(middle.tilt);
+      const double right = std::abs(high.tilt) - std::abs(middle.tilt);
+      if (left < 0.0 || right < 0.0 || left + right == 0.0) return;
+      // The parabola's lowest point, or the middle of the wider half if that is where we are.
+      const double before = wrap_angle(middle.q6 - low.q6), after = wrap_angle(high.q6 - middle.q6);
+      const double slopes = left / before + right / after;
+      double move = 0.5 * (left / before * after - right / after * before) / slopes;
+      if (std::abs(move) < 0.05 * std::min(before, after)) move = after > before ? 0.5 * after : -0.5 * before;
+      const auto lowest = at_q6(arm_branch, middle.q6 + move);
+      if (!lowest) return;
+      if (differ(*lowest, middle)) {
+        add(between(arm_branch, move < 0.0 ? low : middle, *lowest));
+        add(between(arm_branch, *lowest, move < 0.0 ? middle : high));
+        return;
+      }
+      const bool lower = std::abs(lowest->tilt) < std::abs(middle.tilt);
+      (lower == (move < 0.0) ? high : low) = lower ? middle : *lowest;
+      if (lower) middle = *lowest;
+    }
+  }
+
+  static bool differ(const Tilted& a, const Tilted& b) { return (a.tilt < 0.0) != (b.tilt < 0.0); }
+
+  /// False position between two tilts of different sign, as near as Newton steps need it.
+  [[nodiscard]] Joints between(int arm_branch, Tilted low, Tilted high) const {
+    for (int i = 0; i < 6; ++i) {
+      const double share = std::clamp(low.tilt / (low.tilt - high.tilt), 0.1, 0.9);
+      const auto middle = at_q6(arm_branch, low.q6 + share * wrap_angle(high.q6 - low.q6));
+      if (!middle) break;
+      (differ(*middle, low) ? high : low) = *middle;
+    }
+    return std::abs(low.tilt) < std::abs(high.tilt) ? low.joints : high.joints;
+  }
+
+  void add(const Joints& start) {
+    auto refined = refine(arm_.robot(), flange_, start, tolerance_);
+    if (!refined || found_.count == found_.solutions.size()) return;
+    refined->branch = arm_.branch(refined->joints);
+    // The exact arm's sin q5 is the sine between axes 4 and 6; those of the calibrated one are parallel elsewhere.
+    const auto frames = joint_frames(arm_.robot(), refined->joints);
+    refined->wrist_free = frames[3].rotation.col(2).cross(frames[5].rotation.col(2)).norm() <= tolerance_ / 10.0;
+    const auto is_known = [&](const IkSolution& other) {
+      const Joints apart = (other.joints - refined->joints).unaryExpr(&wrap_once);
+      const bool same_arm = ((other.branch ^ refined->branch) & 5) == 0;
+      return apart.cwiseAbs().maxCoeff() < 1e-5 || (same_arm && other.wrist_free && refined->wrist_free);
+    };
+    if (std::none_of(found_.begin(), found_.end(), is_known)) found_.solutions[found_.count++] = *refined;
+  }
+
+  const InverseKinematics& arm_;
+  const UrGeometry& g_;
+  const Pose& flange_;
+  double tolerance_;
+  IkSolutions found_;
+};
 
 }  // namespace
 
@@ -248,36 +248,20 @@ IkSolutions InverseKinematics::operator()(const Pose& flange, const IkOptions& o
     throw DataError("ur10.pose_not_rigid", "the pose is not finite or its rotation is not orthonormal");
   }
   const UrGeometry& g = geometry_;
-  Edges edges{g.offset[5] + (options.seed ? (*options.seed)[5] : 0.0), options.tolerance / 10.0, options.tolerance,
-              0.0};
-  if (!g.exact) {
-    edges.reach = 0.05;
-    edges.apart = 0.05;
-  }
-  const ClosedForm closed(g, flange, edges);
+  const Edges edges{g.offset[5] + (options.seed ? (*options.seed)[5] : 0.0), options.tolerance / 10.0,
+                    options.tolerance, 0.0};
+  if (!g.exact) return CalibratedSolutions(*this, flange, options.tolerance).solve(edges.q6_wanted);
   IkSolutions found;
+  const ClosedForm closed(g, flange, edges);
   for (std::size_t i = 0; i < closed.count; ++i) {
     const Candidate& candidate = closed.candidates[i];
-    IkSolution solution;
-    for (int j = 0; j < 6; ++j) {
-      solution.joints[j] = wrap_once(angle_of(candidate.q[static_cast<std::size_t>(j)]) - g.offset[j]);
-    }
-    if (g.exact) {
-      solution.residual = distance(exact_pose(g, candidate.q), flange).largest();
-      if (!(solution.residual <= options.tolerance)) continue;
-    } else {
-      const auto refined = refine(robot_, flange, solution.joints, options.tolerance);
-      if (!refined) continue;
-      const auto is_twin = [&](const IkSolution& other) {
-        const Joints apart = (other.joints - refined->joints).unaryExpr(&wrap_once);
-        return apart.cwiseAbs().maxCoeff() < 1e-5;
-      };
-      if (std::any_of(found.begin(), found.end(), is_twin)) continue;
-      solution = *refined;
-    }
+    IkSolution& solution = found.solutions[found.count];
+    solution.joints = joints_of(g, candidate);
+    solution.residual = distance(exact_pose(g, candidate.q), flange).largest();
+    if (!(solution.residual <= options.tolerance)) continue;
     solution.branch = candidate.branch;
     solution.wrist_free = candidate.wrist_free;
-    found.solutions[found.count++] = solution;
+    ++found.count;
   }
   return found;
 }

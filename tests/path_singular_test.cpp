@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lfdtools/posture.hpp"
 #include "lfdtools/ur_geometry.hpp"
 #include "path_fixture.hpp"
 
@@ -141,4 +142,34 @@ TEST_CASE("samples with a singular wrist are crossed with the q6 of their neighb
   const JointPath plane = solve_path(arm, poses_of(arm.robot(), joints), times);
   CHECK(plane.status == PathStatus::continuous);
   CHECK(largest_step(plane.joints) < 2.0 * largest_step(joints));
+}
+
+TEST_CASE("along a singular wrist rounding changes no branch, and a border is named as its neighbours are") {
+  const InverseKinematics arm(nominal_ur10());
+  Samples joints(6, 6);
+  for (Eigen::Index t = 0; t < 6; ++t) {
+    const auto s = static_cast<double>(t);
+    joints.row(t) << 0.3, -1.2 - 0.05 * s, 1.4 + 0.02 * s, 0.1 * s, (t % 2 == 0 ? 1e-17 : -1.6e-16), 1.3 + 0.1 * s;
+  }
+  const Vector times = Vector::LinSpaced(6, 0.0, 5.0);
+  const JointPath flat = solve_path(arm, poses_of(arm.robot(), joints), times);
+  CHECK(flat.status == PathStatus::continuous);
+  CHECK(flat.branch_changes == 0);
+
+  CHECK(border_bits(arm, joints.row(0).transpose()) == 2);
+  CHECK(branches_along(arm, joints) == std::vector<int>(6, arm.branch(joints.row(0).transpose())));
+  joints(3, 4) = -0.1;  // the first to leave the border says what those before it are
+  const int minus = arm.branch(joints.row(3).transpose());
+  CHECK(branches_along(arm, joints) == std::vector<int>(6, minus));
+  joints(0, 4) = 0.1;
+  const int plus = arm.branch(joints.row(0).transpose());
+  CHECK(branches_along(arm, joints) == std::vector<int>{plus, plus, plus, minus, minus, minus});
+  CHECK(branches_along(arm, Samples(0, 6)).empty());
+
+  joints.col(4) << -0.1, -0.05, 0.0, 0.0, 0.05, 0.1;  // a wrist that truly crosses changes once
+  PathOptions options;
+  options.seed = joints.row(0).transpose();
+  const JointPath crossing = solve_path(arm, poses_of(arm.robot(), joints), times, options);
+  CHECK(crossing.status == PathStatus::continuous);
+  CHECK(crossing.branch_changes == 1);
 }

@@ -201,3 +201,41 @@ TEST_CASE("a joint that winds up starts a turn back where its range asks for it,
   CHECK(winding(0.1).posture.empty());
   CHECK(winding(0.1).blocked == 0);
 }
+
+TEST_CASE("ranges of any width are looked at as far as the way winds") {
+  JointLimits limits;
+  limits.velocity.setConstant(3.0);
+  const double width = GENERATE(4.0 * pi, 200.0 * pi, 1e9, 1e300);
+  INFO("ranges up to " << width);
+  limits.position.col(0).setConstant(-width);
+  limits.position.col(1).setConstant(width);
+  limits.position.row(2) << 0.0, 2.0 * pi;  // joint 3 has to start a turn up
+  const bool jumping = GENERATE(false, true);
+  constexpr int T = 201;
+  Layers layers(T);
+  const double turns = std::min(5.0, width / (2.0 * pi) + 1.0);
+  for (int t = 0; t < T; ++t) {
+    Joints q = Joints::Zero();
+    q[2] = -1.0 + 0.5 * t / T;
+    q[5] = wrap_angle(2 * pi * turns * t / (T - 1.0));
+    if (jumping && t == T - 1) q[0] = 2.0;
+    layers[static_cast<std::size_t>(t)].push_back({q, 0});
+    q[5] = wrap_angle(q[5] + pi);
+    layers[static_cast<std::size_t>(t)].push_back({q, 1});
+  }
+  const Way way = best_way(layers, Vector::LinSpaced(T, 0.0, 20.0), limits);
+  REQUIRE(way.joints.rows() == T);
+  CHECK(way.joints(0, 2) == Approx(2 * pi - 1.0));
+  CHECK(way.joints(T - 1, 5) - way.joints(0, 5) == Approx(2 * pi * turns));
+  for (int j = 0; j < 6; ++j) {
+    CHECK(way.joints.col(j).minCoeff() >= limits.position(j, 0) - 1e-9);
+    CHECK(way.joints.col(j).maxCoeff() <= limits.position(j, 1) + 1e-9);
+  }
+
+  GraphOptions far;  // joint 6 stands some turns up, as it may
+  far.seed = way.joints.row(0).transpose();
+  (*far.seed)[5] = std::min(width, 60.0 * pi) - turns * 2.0 * pi;
+  const Way up = best_way(layers, Vector::LinSpaced(T, 0.0, 20.0), limits, far);
+  REQUIRE(up.joints.rows() == T);
+  CHECK(std::abs(up.joints(0, 5) - (*far.seed)[5]) < pi);
+}

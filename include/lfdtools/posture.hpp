@@ -24,7 +24,14 @@ struct DemonstratedPosture {
 [[nodiscard]] DemonstratedPosture demonstrated_posture(const InverseKinematics& arm,
                                                        const std::vector<Samples>& demonstrations);
 
+/// The bits of the branch, see branch_name, that joints are on the border of: there rounding decides on them.
+[[nodiscard]] int border_bits(const InverseKinematics& arm, const Joints& q);
+
 /// Whether joints are in a branch or on its border: there both sides are it (a stretched elbow is bent neither way).
 [[nodiscard]] bool keeps_branch(const InverseKinematics& arm, const Joints& q, int branch);
+
+/// The branch of each row of a path; on a border that of the row before, at the start that of the first row beyond it.
+/// @param joints  T x 6 [rad]
+[[nodiscard]] std::vector<int> branches_along(const InverseKinematics& arm, const Samples& joints);
 
 }  // namespace lfd

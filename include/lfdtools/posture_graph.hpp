@@ -13,6 +13,7 @@ namespace lfd {
 struct Posture {
   Joints joints = Joints::Zero();  ///< [rad], each stands for all angles that differ by whole turns
   int branch = 0;
+  int border = 0;  ///< bits of the branch that are on either side, see border_bits
 };
 
 /// What decides between ways through the graph, see best_way.
@@ -36,10 +37,12 @@ struct Way {
 /// - the start nearest to the seed, if there is one (sum of squares of joint differences over speed limits), of those
 ///   from which a way without jumps goes on;
 /// - the largest joint speed over its limit: smallest possible up to step_slack;
-/// - fewest jumps, then fewest changes of branch;
+/// - fewest jumps, then fewest changes of branch, those to or from a border aside;
 /// - least sum over time of the largest joint motion over its speed limit [s];
 /// - smallest start angles (sum of squares), lowest indices.
-/// Successive angles differ by at most half a turn.
+/// Successive angles differ by at most half a turn. Of joints that some way takes out of their ranges, whole turns as
+/// far from the seed (without one: from zero) are looked at as ways wind, so that ranges of any width will do; where
+/// several such ranges are wider than arms have them, fewer, up to 1024 combinations.
 /// @param layers  T >= 1, none of them empty
 /// @param times   T, strictly rising [s]
 [[nodiscard]] Way best_way(const std::vector<std::vector<Posture>>& layers, const Vector& times,

@@ -24,12 +24,13 @@ struct IkSolution {
   Joints joints = Joints::Zero();  ///< each in (-pi, pi]
   int branch = 0;                  ///< 0..7, see branch_name
   double residual = 0.0;           ///< distance of its pose to the one asked for, larger of metres and radians
-  bool wrist_free = false;         ///< q6 could be anything (near by): sin q5 = 0
+  bool wrist_free = false;         ///< q6 could be anything (near by): axes 4 and 6 are parallel, sin q5 = 0
 };
 
-/// All solutions of one pose in the order of their branches: a value, no allocation.
+/// All solutions of one pose in the order of their branches: a value, no allocation. At most 8 of the exact pattern,
+/// one a branch; of a calibrated arm near its wrist singularity a branch can hold several.
 struct IkSolutions {
-  std::array<IkSolution, 8> solutions;
+  std::array<IkSolution, 16> solutions;
   std::size_t count = 0;
 
   [[nodiscard]] bool empty() const { return count == 0; }
@@ -45,13 +46,14 @@ struct IkSolutions {
 [[nodiscard]] std::string branch_name(int branch);
 
 /// Solver for one arm. Closed form for the exact pattern; for calibrated DH rows the closed form of the nearest exact
-/// arm, refined by Newton steps.
+/// arm, refined by Newton steps. Where the wrist of that is nearly singular, calibration alone decides on q6, and all
+/// q6 are searched.
 class InverseKinematics {
  public:
   /// @throws ConfigError as check(Robot) and ur_geometry
   explicit InverseKinematics(Robot robot);
 
-  /// All configurations that reach the pose, distinct modulo 2 pi, 0..8 of them; none means out of reach. A double root
+  /// All configurations that reach the pose, distinct modulo 2 pi; none means out of reach. A double root
   /// (arm stretched or folded, wrist centre as near to the base axis as it can be) is one solution. Joint limits are
   /// not looked at.
   /// @param flange  pose of the flange in the base [m]

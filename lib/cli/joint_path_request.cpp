@@ -114,8 +114,8 @@ class Answer {
     }
     try {
       return InverseKinematics(std::move(robot));
-    } catch (const ConfigError& error) {
-      throw ConfigError(error.id(), error.what(), {file, 0, 0, error.place().pointer});
+    } catch (const ConfigError& error) {  // of the rows: what else a robot can have wrong, reading it has refused
+      throw ConfigError(error.id(), error.what(), {file, 0, 0, file.ends_with(".urdf") ? "/robot" : "/dh"});
     }
   }
 
