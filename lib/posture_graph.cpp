@@ -3,32 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <tuple>
 #include <utility>
+
+#include "posture_turns.hpp"
 
 namespace lfd {
 namespace {
 
-using Layers = std::vector<std::vector<Posture>>;
-
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Added to the ratio of a step that is a jump: no number of slow steps is worth one.
-constexpr double jump_cost = 1e6;
-
-/// The motion between two postures of successive layers, each joint by the shorter way round. It is the same for all
-/// whole turns of the first posture, so sums along ways that differ by turns alone are equal to the bit.
-struct Edge {
-  double ratio = 0.0;    // largest |dq_j| / (v_j dt), plus jump_cost for a jump
-  double seconds = 0.0;  // largest |dq_j| / v_j
-  bool changes_branch = false;
-  std::array<int, 6> turns{};  // of the second posture, when the first has none
-  [[nodiscard]] bool jumps() const { return ratio >= jump_cost; }
-};
-
-/// States of one posture at most; ranges of two turns either way, which arms have, take up to 3^6.
-constexpr double most_states = 1024.0;
 /// Turns further out are not counted: they have no digits left for the angle.
 constexpr double most_turns = 1e9;
 
@@ -66,7 +49,9 @@ class Graph {
   /// less, so without `jumping` only they are looked at.
   [[nodiscard]] std::optional<Way> solve_counting(bool jumping) {
     jumping_ = jumping;
-    choose_turns();
+    const TurnWindow window = turn_window(layers_, edges_, limits_.position, options_.seed, jumping_);
+    counted_ = window.counted;
+    range_ = window.range;
     return best();
   }
 
@@ -120,71 +105,6 @@ class Graph {
     number_states();
     const Starts starts = choose_starts(bottlenecks());
     return starts.states.empty() ? std::nullopt : trace(starts);
-  }
-
-  /// From the start turn nearest to the seed (or zero), how far down and up any way takes a joint [rad].
-  [[nodiscard]] std::pair<double, double> reach_of(Eigen::Index j, double centre) const {
-    double down = infinity, up = -infinity;
-    std::vector<std::pair<double, double>> turns;  // fewest and most of each posture; none yet: the first above
-    for (const Posture& posture : layers_[0]) {
-      const double n = std::nearbyint((centre - posture.joints[j]) / turn);
-      turns.emplace_back(n, n);
-    }
-    for (std::size_t t = 0; t < layers_.size(); ++t) {
-      if (t > 0) {
-        std::vector<std::pair<double, double>> next(layers_[t].size(), {infinity, -infinity});
-        for (std::size_t k = 0; k < edges_[t].size(); ++k) {
-          const Edge& e = edges_[t][k];
-          const auto& from = turns[k / next.size()];
-          if (e.jumps() && !jumping_) continue;
-          auto& to = next[k % next.size()];
-          to.first = std::min(to.first, from.first + e.turns[static_cast<std::size_t>(j)]);
-          to.second = std::max(to.second, from.second + e.turns[static_cast<std::size_t>(j)]);
-        }
-        turns = std::move(next);
-      }
-      for (std::size_t i = 0; i < turns.size(); ++i) {
-        down = std::min(down, layers_[t][i].joints[j] + turn * turns[i].first);
-        up = std::max(up, layers_[t][i].joints[j] + turn * turns[i].second);
-      }
-    }
-    return {down, up};
-  }
-
-  /// A joint that no way takes out of its range needs no turns counted: its start is the one nearest to the seed. The
-  /// others are looked at as many turns from there as a way could need, fewer if that would be too many states.
-  void choose_turns() {
-    range_ = limits_.position;
-    std::array<double, 6> centre{}, width{};
-    for (std::size_t j = 0; j < 6; ++j) {
-      const auto row = static_cast<Eigen::Index>(j);
-      const double wanted = options_.seed ? (*options_.seed)[row] : 0.0;
-      const auto [down, up] = reach_of(row, wanted);
-      counted_[j] = !(down >= limits_.position(row, 0) && up <= limits_.position(row, 1));
-      if (!counted_[j]) continue;
-      centre[j] = std::clamp(wanted, limits_.position(row, 0), limits_.position(row, 1));
-      width[j] = up >= down ? 2.0 * std::ceil((up - down) / turn) + 3.0 : 0.0;  // turns either way
-      width[j] = std::min(width[j], most_states);
-    }
-    const auto narrow = [&](std::size_t j) {
-      const auto row = static_cast<Eigen::Index>(j);
-      range_(row, 0) = std::max(limits_.position(row, 0), centre[j] - turn * width[j]);
-      range_(row, 1) = std::min(limits_.position(row, 1), centre[j] + turn * width[j]);
-      return std::floor((range_(row, 1) - range_(row, 0)) / turn) + 1.0;
-    };
-    while (true) {
-      double states = 1.0, most = 0.0;
-      std::size_t widest = 0;
-      for (std::size_t j = 0; j < 6; ++j) {
-        if (!counted_[j]) continue;
-        const double count = narrow(j);
-        states *= count;
-        if (count > most) widest = j;
-        most = std::max(most, count);
-      }
-      if (states <= most_states) return;
-      width[widest] -= width[widest] > 1.0 ? 1.0 : 0.25;
-    }
   }
 
   void number_states() {
