@@ -3,35 +3,18 @@
 #include "lfdtools/path.hpp"
 
 namespace lfd {
-namespace {
-
-constexpr double repeated = 1e-7;  // how near a row is to one that it repeats [rad]
-
-}  // namespace
 
 std::vector<Eigen::Index> moving_rows(const Samples& joints, double radius) {
   const Eigen::Index T = joints.rows();
-  const auto apart = [&](Eigen::Index t, Eigen::Index other) {
-    return (joints.row(t) - joints.row(other)).cwiseAbs().maxCoeff();
+  const auto near = [&](Eigen::Index t, Eigen::Index end) {
+    return (joints.row(t) - joints.row(end)).cwiseAbs().maxCoeff() <= radius;
   };
   Eigen::Index first = 0, last = T - 1;
-  while (first + 1 < T && apart(first + 1, 0) <= radius) ++first;
-  while (last > 0 && apart(last - 1, T - 1) <= radius) --last;
+  while (first + 1 < T && near(first + 1, 0)) ++first;
+  while (last > 0 && near(last - 1, T - 1)) --last;
   std::vector<Eigen::Index> kept{0};
-  for (Eigen::Index t = first + 1; t < last;) {
-    const Eigen::Index begin = kept.back();
-    double gone = apart(t, begin);
-    Eigen::Index end = t;
-    while (end < last && apart(end, begin) <= radius / 10) {
-      ++end;
-      gone += apart(end, end - 1);
-    }
-    // Rows as near as these are only sampled often where the arm goes on through them, not to and fro.
-    const bool stays = gone > 2.0 * apart(end, begin);
-    for (; t < end; ++t) {
-      if (!stays && apart(t, kept.back()) > repeated) kept.push_back(t);
-    }
-    if (t < last) kept.push_back(t++);
+  for (Eigen::Index t = first + 1; t < last; ++t) {
+    if ((joints.row(t) - joints.row(kept.back())).cwiseAbs().maxCoeff() > radius / 10) kept.push_back(t);
   }
   if (T > 1) kept.push_back(T - 1);
   return kept;

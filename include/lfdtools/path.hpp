@@ -83,10 +83,9 @@ struct JointPath {
                                    const PathOptions& options = {});
 
 /// The rows of a path in which the arm does not rest: all but those after the first that stay within `radius` of it,
-/// those before the last that stay within it of the last, and between them those that repeat the row before, to
-/// 1e-7 rad, or go to and fro within a tenth of the radius about it; rows of a slow path sampled often stay. A hand
-/// that settles on its goal goes to and fro by less than it can be held to, and a law of motion that followed it there
-/// exactly would have to stop at each turn.
+/// those before the last that stay within it of the last, and between them those within a tenth of it of the row
+/// before. A hand that settles on its goal goes to and fro by less than it can be held to, and a law of motion that
+/// followed it there exactly would have to stop at each turn.
 /// @param joints  T x 6, T >= 1 [rad]   @param radius  largest joint distance [rad]
 [[nodiscard]] std::vector<Eigen::Index> moving_rows(const Samples& joints, double radius);
 

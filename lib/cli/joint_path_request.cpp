@@ -195,10 +195,11 @@ class Answer {
     const Eigen::Index less = path.joints.rows() - moving.joints.rows();
     if (less > 0) {
       const std::string words = describe(recording.demonstration.labels);
-      run_.messages().note("ik.rest_cut",
-                           fmt::format("{}{} rows in which the arm rests are left out: within {} rad of the first or "
-                                       "last row, or staying within {} rad between",
-                                       words.empty() ? "" : words + ": ", less, at_rest, at_rest / 10));
+      run_.messages().note(
+          "ik.rest_cut",
+          fmt::format(
+              "{}{} rows are left out: within {} rad of the first or last, or a tenth of that of the row kept before",
+              words.empty() ? "" : words + ": ", less, at_rest));
     }
     return moving;
   }
