@@ -37,7 +37,7 @@ struct Touching {
 /// gap + slope J^-1 dx <= margin for an end of its axis, and where the hand is three times as far off as it may be at
 /// one sample; a path counts by the ratio of the densities (PathProposal). So the first order decides where to look,
 /// not what is told. The way between samples is no part of it, nor is whether the joints' range allows a drawn path;
-/// where the hand is out of reach nothing touches.
+/// where the hand is out of reach nothing touches, at other samples of that path it may.
 /// @param joints  T x 6 [rad]   @param tool  pose of the hand, whose error is told, in the flange frame
 /// @throws DataError [touching.shape] if the samples do not agree in number, [touching.not_finite]
 [[nodiscard]] Touching touching(const ArmClearance& arm, const Samples& joints, const HandSpread& spread,

@@ -334,11 +334,12 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
       run.detail("clearance.probability", text);
       run.figure("path_probability", chances.path.probability);
       if (chances.out_of_reach.probability > often_lost) {
-        run.messages().warning("clearance.out_of_reach",
-                               fmt::format("{}where the hand may be off, {:.2g} of the paths leave the arm's reach: these "
-                                           "count as touching nothing",
-                                           prefix_of(recording.demonstration.labels), chances.out_of_reach.probability),
-                               recording.place(0));
+        run.messages().warning(
+            "clearance.out_of_reach",
+            fmt::format("{}where the hand may be off, {:.2g} of the paths leave the arm's reach: there "
+                        "they count as touching nothing",
+                        prefix_of(recording.demonstration.labels), chances.out_of_reach.probability),
+            recording.place(0));
       }
     }
     CsvWriter& writer = table.begin(recording.demonstration.labels);
