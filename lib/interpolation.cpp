@@ -19,57 +19,79 @@ Eigen::Index interval(const Vector& x, double q, Eigen::Index hint) {
   return std::clamp<Eigen::Index>(above - x.data() - 1, 0, last);
 }
 
-/// Second derivatives of the not-a-knot cubic spline: the tridiagonal system of the continuity conditions, its first
-/// and last unknown eliminated by equal third derivatives on both sides of the second and of the last but one sample.
-Samples spline_second_derivatives(const Vector& t, const Samples& y) {
-  const Eigen::Index n = t.size();
-  Samples m = Samples::Zero(n, y.cols());
-  if (n == 2) return m;
-  const auto h = [&](Eigen::Index i) { return t[i + 1] - t[i]; };
-  const auto divided = [&](Eigen::Index i) {
-    return (6.0 * ((y.row(i + 1) - y.row(i)) / h(i) - (y.row(i) - y.row(i - 1)) / h(i - 1))).eval();
-  };
-  if (n == 3) {
-    for (Eigen::Index i = 0; i < 3; ++i) m.row(i) = divided(1) / (3.0 * (h(0) + h(1)));
+/// Second derivatives m of a cubic spline, from the tridiagonal system that the continuity of its first derivative
+/// sets: h(i-1) m(i-1) + 2 (h(i-1) + h(i)) m(i) + h(i) m(i+1) = 6 (slope(i) - slope(i-1)) at every inner sample.
+class SecondDerivatives {
+ public:
+  SecondDerivatives(const Vector& t, const Samples& y) : n_(t.size()), h_(t.tail(n_ - 1) - t.head(n_ - 1)) {
+    lower_ = diagonal_ = upper_ = Vector::Zero(n_);
+    right_ = Samples::Zero(n_, y.cols());
+    slopes_ = (y.bottomRows(n_ - 1) - y.topRows(n_ - 1)).array().colwise() / h_.array();
+    for (Eigen::Index i = 1; i + 1 < n_; ++i) {
+      lower_[i] = h_[i - 1];
+      diagonal_[i] = 2.0 * (h_[i - 1] + h_[i]);
+      upper_[i] = h_[i];
+      right_.row(i) = 6.0 * (slopes_.row(i) - slopes_.row(i - 1));
+    }
+  }
+
+  /// The first and the last unknown are eliminated by the equal third derivatives.
+  [[nodiscard]] Samples not_a_knot() {
+    Samples m = Samples::Zero(n_, right_.cols());
+    if (n_ == 2) return m;
+    if (n_ == 3) {
+      for (Eigen::Index i = 0; i < 3; ++i) m.row(i) = right_.row(1) / (3.0 * (h_[0] + h_[1]));
+      return m;
+    }
+    const double h0 = h_[0], h1 = h_[1], g0 = h_[n_ - 2], g1 = h_[n_ - 3];
+    diagonal_[1] += h0 * (h0 + h1) / h1;
+    upper_[1] -= h0 * h0 / h1;
+    diagonal_[n_ - 2] += g0 * (g0 + g1) / g1;
+    lower_[n_ - 2] -= g0 * g0 / g1;
+    solve(1, n_ - 2, m);
+    m.row(0) = ((h0 + h1) * m.row(1) - h0 * m.row(2)) / h1;
+    m.row(n_ - 1) = ((g0 + g1) * m.row(n_ - 2) - g0 * m.row(n_ - 3)) / g1;
     return m;
   }
-  const Eigen::Index inner = n - 2;
-  Vector lower = Vector::Zero(inner);
-  Vector diagonal(inner);
-  Vector upper = Vector::Zero(inner);
-  Samples right(inner, y.cols());
-  for (Eigen::Index k = 0; k < inner; ++k) {
-    const Eigen::Index i = k + 1;
-    lower[k] = h(i - 1);
-    diagonal[k] = 2.0 * (h(i - 1) + h(i));
-    upper[k] = h(i);
-    right.row(k) = divided(i);
+
+  [[nodiscard]] Samples at_rest() {
+    diagonal_[0] = 2.0 * h_[0];
+    upper_[0] = h_[0];
+    right_.row(0) = 6.0 * slopes_.row(0);
+    lower_[n_ - 1] = h_[n_ - 2];
+    diagonal_[n_ - 1] = 2.0 * h_[n_ - 2];
+    right_.row(n_ - 1) = -6.0 * slopes_.row(n_ - 2);
+    Samples m(n_, right_.cols());
+    solve(0, n_ - 1, m);
+    return m;
   }
-  const double h0 = h(0);
-  const double h1 = h(1);
-  diagonal[0] += h0 * (h0 + h1) / h1;
-  upper[0] -= h0 * h0 / h1;
-  const double g0 = h(n - 2);
-  const double g1 = h(n - 3);
-  diagonal[inner - 1] += g0 * (g0 + g1) / g1;
-  lower[inner - 1] -= g0 * g0 / g1;
-  for (Eigen::Index k = 1; k < inner; ++k) {  // Thomas algorithm
-    const double factor = lower[k] / diagonal[k - 1];
-    diagonal[k] -= factor * upper[k - 1];
-    right.row(k) -= factor * right.row(k - 1);
+
+ private:
+  /// Rows first..last of the system, by the Thomas algorithm.
+  void solve(Eigen::Index first, Eigen::Index last, Samples& m) {
+    for (Eigen::Index i = first + 1; i <= last; ++i) {
+      const double factor = lower_[i] / diagonal_[i - 1];
+      diagonal_[i] -= factor * upper_[i - 1];
+      right_.row(i) -= factor * right_.row(i - 1);
+    }
+    m.row(last) = right_.row(last) / diagonal_[last];
+    for (Eigen::Index i = last - 1; i >= first; --i) {
+      m.row(i) = (right_.row(i) - upper_[i] * m.row(i + 1)) / diagonal_[i];
+    }
   }
-  m.row(inner) = right.row(inner - 1) / diagonal[inner - 1];
-  for (Eigen::Index k = inner - 2; k >= 0; --k) m.row(k + 1) = (right.row(k) - upper[k] * m.row(k + 2)) / diagonal[k];
-  m.row(0) = ((h0 + h1) * m.row(1) - h0 * m.row(2)) / h1;
-  m.row(n - 1) = ((g0 + g1) * m.row(n - 2) - g0 * m.row(n - 3)) / g1;
-  return m;
-}
+
+  Eigen::Index n_;
+  Vector h_, lower_, diagonal_, upper_;
+  Samples right_, slopes_;
+};
 
 }  // namespace
 
-CubicSpline::CubicSpline(Vector times, Samples values) : times_(std::move(times)), values_(std::move(values)) {
+CubicSpline::CubicSpline(Vector times, Samples values, SplineEnds ends)
+    : times_(std::move(times)), values_(std::move(values)) {
   check(Trajectory{times_, values_});
-  second_ = spline_second_derivatives(times_, values_);
+  SecondDerivatives of(times_, values_);
+  second_ = ends == SplineEnds::at_rest ? of.at_rest() : of.not_a_knot();
 }
 
 Samples CubicSpline::operator()(const Vector& t) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -89,7 +90,7 @@ class Retiming::Solver {
       const Vector rows = of_rows ? excess_of_rows() : Vector();
       double excess = between.maxCoeff();
       if (of_rows) excess = std::max(excess, rows.maxCoeff());
-      // Between two points of the finer grid a limit is passed by less than the millionth.
+      // Between two points of the finer grid a speed passes its limit by less than the millionth.
       law_.stretch_ = excess > 1.0 ? excess * (1.0 + 1e-6) : 1.0;
       const auto stretched = [](const Retiming& law) { return law.points_.back().t * law.stretch_; };
       if (iteration == 0 || stretched(law_) < stretched(best)) best = law_;
@@ -183,24 +184,47 @@ class Retiming::Solver {
     Vector excess = Vector::Ones(static_cast<Eigen::Index>(share_.size()));
     for (std::size_t i = 0; i < share_.size(); ++i) {
       double& most = excess[static_cast<Eigen::Index>(i)];
+      std::array<State, 11> states;
       for (int tenth = 0; tenth <= 10; ++tenth) {
-        const State state = law_.at(law_.points_[i], law_.points_[i + 1], tenth / 10.0);
-        const double bend = state.acceleration.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff();
-        most = std::max({most, speed_share(state), std::sqrt(bend)});
+        State& state = states[static_cast<std::size_t>(tenth)];
+        state = law_.at(law_.points_[i], law_.points_[i + 1], tenth / 10.0);
+        most = std::max(most, speed_share(state));
       }
+      const Joints bend = largest_between(states[0].acceleration, states[5].acceleration, states[10].acceleration);
+      most = std::max(most, std::sqrt(bend.cwiseQuotient(options_.acceleration).maxCoeff()));
     }
     return excess;
   }
 
-  /// The same of the spline through the knots over their times, for each of them. Its second derivative is largest at
-  /// a knot, and its first is looked at in tenths of the interval that ends there.
+  /// The largest amounts that parabolas reach between their values at 0, 1/2 and 1. The acceleration is one along a
+  /// grid interval: the path's first derivative, quadratic, times a constant, and its second times (ds/dt)^2, both
+  /// linear.
+  [[nodiscard]] static Joints largest_between(const Joints& begin, const Joints& middle, const Joints& end) {
+    Joints largest = begin.cwiseAbs().cwiseMax(end.cwiseAbs());
+    for (int j = 0; j < 6; ++j) {
+      const double square = 2.0 * (begin[j] - 2.0 * middle[j] + end[j]), slope = end[j] - begin[j] - square;
+      const double turn = -slope / (2.0 * square);
+      if (turn > 0.0 && turn < 1.0) largest[j] = std::max(largest[j], std::abs(begin[j] + 0.5 * turn * slope));
+    }
+    return largest;
+  }
+
+  /// The same of the splines through the knots over their times, for each of them: of the one that rests at both ends,
+  /// and of the one of a reader who does not know that it does.
   [[nodiscard]] Vector excess_of_rows() const {
     const auto K = static_cast<Eigen::Index>(rows_.size());
     Vector times(K);
     for (Eigen::Index k = 0; k < K; ++k) times[k] = law_.points_[at_knot_[static_cast<std::size_t>(k)]].t;
-    const CubicSpline spline(times, joints_(rows_, Eigen::all));
-    Vector excess(K);
-    for (Eigen::Index k = 0; k < K; ++k) {
+    const Samples values = joints_(rows_, Eigen::all);
+    const Vector at_rest = excess_of(CubicSpline(times, values, SplineEnds::at_rest), times);
+    return at_rest.cwiseMax(excess_of(CubicSpline(times, values, SplineEnds::not_a_knot), times));
+  }
+
+  /// The second derivative of a spline is largest at a knot; its first is looked at in tenths of the interval that ends
+  /// there.
+  [[nodiscard]] Vector excess_of(const CubicSpline& spline, const Vector& times) const {
+    Vector excess(times.size());
+    for (Eigen::Index k = 0; k < times.size(); ++k) {
       const Joints bend = spline.second_derivatives().row(k).transpose();
       excess[k] = std::sqrt(bend.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff());
       if (k == 0) continue;

@@ -54,6 +54,36 @@ TEST_CASE("two and three samples give a line and a parabola") {
   CHECK(CubicSpline(t3, y3)(Vector::Constant(1, 2.0))(0, 0) == Approx(4));
 }
 
+TEST_CASE("a spline at rest at its ends is exact for cubics that are, and joins its parts smoothly") {
+  Vector t(5);
+  t << 0, 0.1, 0.7, 0.75, 1;
+  Samples y(5, 1);
+  for (int i = 0; i < 5; ++i) y(i, 0) = t[i] * t[i] * (3 - 2 * t[i]);
+  const CubicSpline exact(t, y, SplineEnds::at_rest);
+  const Vector q = linspace(0, 1, 101);
+  const Samples value = exact(q);
+  for (int k = 0; k < 101; ++k) CHECK(value(k, 0) == Approx(q[k] * q[k] * (3 - 2 * q[k])).margin(1e-14));
+
+  Samples rough(5, 1);
+  rough << 3, -1, 4, -1, 5;
+  const CubicSpline spline(t, rough, SplineEnds::at_rest);
+  CHECK((spline(t) - rough).norm() < 1e-13);
+  CHECK(std::abs(spline.derivative(t.head(1))(0, 0)) < 1e-12);
+  CHECK(std::abs(spline.derivative(t.tail(1))(0, 0)) < 1e-12);
+  constexpr double h = 1e-9;
+  for (int i = 1; i < 4; ++i) {
+    Vector sides(2);
+    sides << t[i] - h, t[i] + h;
+    const Samples slopes = spline.derivative(sides);
+    CHECK(slopes(1, 0) - slopes(0, 0) == Approx(2 * h * spline.second_derivatives()(i, 0)).margin(1e-4));
+  }
+  Samples two(2, 1);
+  two << 0, 1;
+  Vector ends(2);
+  ends << 0, 1;
+  CHECK(CubicSpline(ends, two, SplineEnds::at_rest)(Vector::Constant(1, 0.25))(0, 0) == Approx(0.15625));
+}
+
 TEST_CASE("PCHIP meets its data and keeps rising data rising") {
   Random random(7);
   Vector x(20);

@@ -9,6 +9,7 @@
 #include "lfdtools/error.hpp"
 #include "lfdtools/interpolation.hpp"
 #include "lfdtools/motion.hpp"
+#include "lfdtools/path.hpp"
 #include "lfdtools/random.hpp"
 #include "lfdtools/ur_geometry.hpp"
 
@@ -17,6 +18,7 @@ using namespace lfd;
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr SplineEnds both_ends[] = {SplineEnds::not_a_knot, SplineEnds::at_rest};
 
 /// From rest to rest over a distance, one joint alone: full acceleration, perhaps full speed, full deceleration.
 double fastest(double distance, double velocity, double acceleration) {
@@ -76,8 +78,9 @@ TEST_CASE("one joint alone runs as its two limits say in closed form") {
 }
 
 /// The same of the cubic spline through the rows over their times.
-double largest_share_of_rows(const Retiming& law, const Samples& joints, const RetimeOptions& options) {
-  const CubicSpline spline(law.times(), joints);
+double largest_share_of_rows(const Retiming& law, const Samples& joints, const RetimeOptions& options,
+                             SplineEnds ends) {
+  const CubicSpline spline(law.times(), joints, ends);
   const Eigen::Index T = joints.rows();
   double largest = 0.0;
   for (Eigen::Index k = 0; k < 10 * T; ++k) {
@@ -104,7 +107,9 @@ TEST_CASE("limits hold on a grid ten times as fine, the path is the same, and st
     options.acceleration[i % 6] *= 0.3;
     const Retiming careful = retime(robot, joints, options);
     worst_share = std::max(worst_share, largest_share(careful, options));
-    worst_rows = std::max(worst_rows, largest_share_of_rows(careful, joints, options));
+    for (const SplineEnds ends : both_ends) {
+      worst_rows = std::max(worst_rows, largest_share_of_rows(careful, joints, options, ends));
+    }
     options.of_rows = false;
     const Retiming law = retime(robot, joints, options);
     slowest = std::max(slowest, careful.duration() / law.duration());
@@ -284,4 +289,34 @@ TEST_CASE("a joint that turns round takes hardly longer than its ways from rest 
   CHECK(share <= 1.0 + 1e-9);
   CHECK(longest < 1.04);
   CHECK(longest_of_rows < 1.06);
+}
+
+TEST_CASE("a hand that settles, past its goal and back, keeps the limits between the last rows too") {
+  const Robot robot = nominal_ur10();
+  double worst = 0.0;
+  for (const double past : {0.3e-3, 1.02e-3, 1.04e-3, 1.1e-3, 1.5e-3, 3e-3, 2e-2}) {
+    constexpr Eigen::Index T = 401;
+    // The step response of a damped oscillator that overshoots its goal by this much [rad].
+    const double logarithm = std::log(past), damping = -logarithm / std::hypot(pi, logarithm);
+    const double ringing = std::sqrt(1.0 - damping * damping);
+    Samples joints(T, 6);
+    for (Eigen::Index t = 0; t < T; ++t) {
+      const double time = 5.0 * static_cast<double>(t) / (T - 1.0), frequency = 3.0;
+      const double phase = ringing * frequency * time;
+      const double left =
+          std::exp(-damping * frequency * time) * (std::cos(phase) + damping / ringing * std::sin(phase));
+      joints.row(t) << left, -0.4 * left, 0.6 * left, 0.35 * left, 0.4 * left, 0.0;
+    }
+    const std::vector<Eigen::Index> rows = moving_rows(joints, 1e-3);
+    const Samples kept = joints(rows, Eigen::all);
+    const RetimeOptions options = limits(2.0, 1.4);
+    const Retiming law = retime(robot, kept, options);
+    CHECK(largest_share(law, options) <= 1.0 + 1e-9);
+    CHECK(law.duration() < 1.15 * (fastest(1.0 + past, 2.0, 1.4) + fastest(past, 2.0, 1.4)));
+    for (const SplineEnds ends : both_ends) {
+      worst = std::max(worst, largest_share_of_rows(law, kept, options, ends));
+    }
+  }
+  INFO("largest share of a limit, of the splines through the rows: " << worst);
+  CHECK(worst <= 1.0 + 1e-5);
 }

@@ -5,12 +5,16 @@
 
 namespace lfd {
 
-/// Cubic spline through T samples of D signals, not-a-knot ends (a parabola for three samples, a line for two).
+/// What a cubic spline does at its ends: its third derivative is the same on both sides of the second and of the last
+/// but one sample (a parabola for three samples, a line for two), or its first derivative is zero at both ends.
+enum class SplineEnds { not_a_knot, at_rest };
+
+/// Cubic spline through T samples of D signals.
 class CubicSpline {
  public:
   /// @param times  T >= 2, strictly rising   @param values  T x D
   /// @throws DataError as check(Trajectory)
-  CubicSpline(Vector times, Samples values);
+  CubicSpline(Vector times, Samples values, SplineEnds ends = SplineEnds::not_a_knot);
 
   /// Values at t, m x D. Outside the samples the end values hold.
   [[nodiscard]] Samples operator()(const Vector& t) const;
