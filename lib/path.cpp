@@ -219,7 +219,11 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
   }
   if (!path.unreachable.empty()) {
     const Eigen::Index sample = path.unreachable.front();
-    fail(path, {PathStatus::unreachable, sample, fmt::format("sample {} is out of reach", sample + 1)});
+    const auto row = static_cast<std::size_t>(
+        std::find_if(layers.begin(), layers.end(), [](const Layer& layer) { return layer.empty(); }) - layers.begin());
+    fail(path,
+         {PathStatus::unreachable, sample,
+          fmt::format("sample {} is out of reach: {}", sample + 1, out_of_reach_words(arm.geometry(), flange[row]))});
     return path;
   }
   for (std::size_t t = 0; options.branch && t < layers.size(); ++t) {

@@ -1,5 +1,7 @@
 #include "lfdtools/ur_geometry.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
@@ -115,6 +117,21 @@ UrGeometry ur_geometry(const Robot& robot) {
   check_lengths(g);
   for (std::size_t i = 0; i < 6; ++i) g.offset[static_cast<Eigen::Index>(i)] = dh[i].theta;
   return g;
+}
+
+std::string out_of_reach_words(const UrGeometry& g, const Pose& flange) {
+  const Vector3 wrist = flange.position - g.d6 * flange.rotation.col(2);
+  const double from_shoulder = (wrist - Vector3(0.0, 0.0, g.d1)).norm();
+  const double longest = std::hypot(std::abs(g.a2) + std::abs(g.a3) + std::abs(g.d5), g.d4);
+  if (from_shoulder > longest) {
+    return fmt::format("the wrist is {:.3f} m from the shoulder, where {:.3f} m are the most", from_shoulder, longest);
+  }
+  const double from_axis = std::hypot(wrist.x(), wrist.y());
+  if (from_axis < std::abs(g.d4)) {
+    return fmt::format("the wrist is {:.3f} m from the axis of the base, where {:.3f} m are the least", from_axis,
+                       std::abs(g.d4));
+  }
+  return "in this orientation the elbow cannot close";
 }
 
 Robot nominal_ur10() {

@@ -213,6 +213,31 @@ TEST_CASE("a singular wrist takes the q6 nearest to the seed for which the elbow
   CHECK(moved > 100);
 }
 
+TEST_CASE("words for a pose out of reach say what is true of it, and of no pose that is reached") {
+  const InverseKinematics arm(nominal_ur10());
+  const UrGeometry& g = arm.geometry();
+  Random random(11);
+  int far = 0, near = 0, turned = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Joints q;
+    for (int j = 0; j < 6; ++j) q[j] = random.uniform(-pi, pi);
+    Pose pose = forward_kinematics(arm.robot(), q);
+    CHECK(out_of_reach_words(g, pose).find("elbow") != std::string::npos);
+    for (int k = 0; k < 3; ++k) pose.position[k] = random.uniform(-1.5, 1.5);
+    if (!arm(pose).empty()) continue;
+    const std::string words = out_of_reach_words(g, pose);
+    far += words.find("from the shoulder") != std::string::npos ? 1 : 0;
+    near += words.find("from the axis") != std::string::npos ? 1 : 0;
+    turned += words.find("elbow") != std::string::npos ? 1 : 0;
+  }
+  CHECK(far > 100);
+  CHECK(near > 10);
+  CHECK(turned > 10);
+  Pose beyond;
+  beyond.position << 2.0, 0.0, g.d1 + g.d6;  // the hand points up, so its wrist is 2 m away at the shoulder's height
+  CHECK(out_of_reach_words(g, beyond) == "the wrist is 2.000 m from the shoulder, where 1.310 m are the most");
+}
+
 TEST_CASE("branches follow the signs they name, and poses out of reach have no solution") {
   const InverseKinematics arm(nominal_ur10());
   Random random(5);

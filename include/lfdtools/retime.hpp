@@ -20,7 +20,8 @@ struct RetimeOptions {
   int grid = 2000;
   /// Keep the limits, too, of the cubic splines through the rows over their new times, at rest at both ends and not a
   /// knot there, as a reader of the rows alone sees the motion, where there are 50 rows or more: where an acceleration
-  /// leaps they go over it, by a third at worst, so leaps are spread over some rows. Costs on average 2 % of the duration with 50 rows, 0.4 % with 200.
+  /// leaps they go over it, by a third at worst, so leaps are spread over some rows. Costs on average 2 % of the
+  /// duration with 50 rows, 0.4 % with 200.
   bool of_rows = true;
 };
 

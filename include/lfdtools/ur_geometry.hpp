@@ -1,6 +1,8 @@
 // The closed-form skeleton of a UR arm: six lengths and the zero offsets of its joints.
 #pragma once
 
+#include <string>
+
 #include "lfdtools/dh.hpp"
 
 namespace lfd {
@@ -24,6 +26,11 @@ struct UrGeometry {
 /// hundreds of metres away, and d, a and theta with it.
 /// @throws ConfigError [ur10.not_a_ur] if the axes are not near the pattern (0.1 rad), or a2 or a3 is under 1 mm
 [[nodiscard]] UrGeometry ur_geometry(const Robot& robot);
+
+/// Why a pose of the flange has no solution, for people: how far its wrist, where axes 5 and 6 meet, is beyond the
+/// stretched arm or too near to the base's axis, or that the orientation is to blame. Of a calibrated arm to
+/// millimetres.
+[[nodiscard]] std::string out_of_reach_words(const UrGeometry& g, const Pose& flange);
 
 /// UR10 (CB3), as in the paper: +-360 deg, 120 deg/s for joints 1 and 2, 180 deg/s for the others; no link bodies.
 [[nodiscard]] Robot nominal_ur10();

@@ -73,6 +73,10 @@ class Spreads {
               "clearance.not_calibrated",
               request_.covariance + " has no calibration: chances are what the process says of itself");
         }
+        if (request_.goal_sd && file.goal_factor.size() > 0) {
+          run_.messages().warning("clearance.goal_twice",
+                                  request_.covariance + " holds an uncertain goal already, and --goal-sd adds to it");
+        }
         spread = hand_spread(calibrated(file), frame_.rotation);
       } catch (const DataError& error) {
         throw DataError(error.id(), error.what(), {request_.covariance, 0, 0, "/covariance"});
@@ -288,6 +292,13 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
                                                     "--self is not given",
                                                     file));
     }
+    for (std::size_t i = 0; request.self && i < scene.obstacles.size(); ++i) {
+      const std::string& name = scene.obstacles[i].name;
+      const auto called = [&](const Capsule& link) { return link.name == name; };
+      if (std::none_of(robot.links.begin(), robot.links.end(), called)) continue;
+      throw ConfigError("scene.name_of_link", fmt::format("an obstacle is called '{}', as a link of the arm is", name),
+                        {file, 0, 0, fmt::format("/obstacles/{}/name", i)});
+    }
     if (scene.obstacles.empty()) {
       run.messages().warning("scene.empty", "the scene has no obstacles: only the arm itself counts",
                              {file, 0, 0, "/obstacles"});
@@ -301,7 +312,7 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
   const Spreads spreads(request, arm.robot(), run);
 
   DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
-                             {.columns = joint_names, .extras = {}, .min_samples = 1});
+                             {.columns = joint_names, .extras = {}, .min_samples = 1, .gaps = false});
   std::vector<std::string> columns = {"t", "link", "obstacle", "distance"};
   if (request.asks_probability()) columns.emplace_back("probability");
   LabelledTable table(run.output(), columns);

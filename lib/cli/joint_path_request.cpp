@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -120,13 +121,17 @@ class Answer {
   }
 
   void warn_of_degrees() {
-    if (!request_.pose.rpy) return;
-    for (const double angle : *request_.pose.rpy) {
-      if (std::abs(angle) <= 2 * std::numbers::pi) continue;
-      run_.messages().warning("joints.degrees",
-                              fmt::format("--rpy has {:g}, over a turn: is it in degrees? radians are needed", angle));
-      return;
-    }
+    const auto look = [&](std::string_view option, const std::optional<std::vector<double>>& angles) {
+      if (!angles) return;
+      const auto over = [](double angle) { return std::abs(angle) > 2 * std::numbers::pi; };
+      const auto first = std::find_if(angles->begin(), angles->end(), over);
+      if (first == angles->end()) return;
+      run_.messages().warning(
+          "joints.degrees",
+          fmt::format("{} has {:g}, over a turn: is it in degrees? radians are needed", option, *first));
+    };
+    look("--rpy", request_.pose.rpy);
+    look("--seed-joints", request_.seed);
   }
 
   [[nodiscard]] std::vector<std::string> columns() const {
@@ -143,7 +148,11 @@ class Answer {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const IkSolutions found = arm_(poses[i]);
-      if (found.empty()) run_.messages().warning("ik.unreachable", "the pose is out of reach", recording.place(row));
+      if (found.empty()) {
+        run_.messages().warning("ik.unreachable",
+                                "the pose is out of reach: " + out_of_reach_words(arm_.geometry(), poses[i]),
+                                recording.place(row));
+      }
       for (std::size_t k = 0; k < found.size(); ++k) {
         Samples cells(1, 8);
         const Joints& q = found[k].joints;
@@ -172,11 +181,11 @@ class Answer {
     } else {
       rates = rates_along(path);
     }
+    if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     if (!judge(path, rates, recording, arm_.robot(), tool_, request_.limits, run_,
                better_posture(arm_, path, poses, given, options_, request_.limits))) {
       return;
     }
-    if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     warn_of_postures(path, recording);
     report_rows(recording, path);
     Samples rows = beside(path.times.array() + start, path.joints);

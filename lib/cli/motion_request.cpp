@@ -104,10 +104,9 @@ class Answer {
     if (excess > 0) {
       run_.refuse(
           "region",
-          fmt::format(
-              "{}the goal lies {:.1f} mm outside the demonstrated region (range of goal - start, and of the start, "
-              "widened by a tenth)",
-              name, 1e3 * excess));
+          fmt::format("{}the {} {:.1f} mm outside the demonstrated region (range of goal - start, and of the start, "
+                      "widened by a tenth)",
+                      name, goal.start ? "start and goal lie" : "goal lies", 1e3 * excess));
     }
   }
 

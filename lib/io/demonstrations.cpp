@@ -57,7 +57,7 @@ double median_period(const Vector& times) {
   return *middle;
 }
 
-void warn_of_sampling(const Recording& recording, Messages& messages) {
+void warn_of_sampling(const Recording& recording, bool gaps, Messages& messages) {
   const Vector& times = recording.demonstration.trajectory.times;
   if (times.size() < 2) return;
   const double period = median_period(times);
@@ -69,7 +69,7 @@ void warn_of_sampling(const Recording& recording, Messages& messages) {
   }
   Eigen::Index first = 0;
   Eigen::Index count = 0;
-  for (Eigen::Index k = 1; k < times.size(); ++k) {
+  for (Eigen::Index k = 1; gaps && k < times.size(); ++k) {
     if (times[k] - times[k - 1] > long_gap * period && count++ == 0) first = k;
   }
   if (count > 0) {
@@ -234,7 +234,7 @@ Recording DemonstrationSource::recording(std::size_t i) const {
   recording.extras = values(kept, Eigen::seqN(1 + D, values.cols() - 1 - D));
   recording.file = block.file;
   for (const Eigen::Index k : kept) recording.lines.push_back(block.first_line + static_cast<std::size_t>(k));
-  warn_of_sampling(recording, messages_);
+  warn_of_sampling(recording, options_.gaps, messages_);
   if (!warned_of_unit_) warned_of_unit_ = warn_of_unit(recording, columns_, messages_);
   return recording;
 }

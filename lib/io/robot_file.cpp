@@ -125,10 +125,11 @@ Robot load_robot_with_links(const std::string& path, Messages& messages, bool st
     if (std::any_of(robot.links.begin(), robot.links.end(), [&](const Capsule& link) { return link.frame == frame; })) {
       continue;
     }
-    throw ConfigError(
-        "robot.no_links",
-        fmt::format("the robot file has no link on frame {}, so not all of the arm can be kept clear", frame),
-        {path, 0, 0, "/links"});
+    throw ConfigError("robot.no_links",
+                      fmt::format("the robot file has no link, the capsule {{name, frame, from, to, radius}}, on frame "
+                                  "{}, so not all of the arm can be kept clear; ur10 and ur10e have all",
+                                  frame),
+                      {path, 0, 0, "/links"});
   }
   return robot;
 }

@@ -1,5 +1,7 @@
 #include "lfdtools/io/scene_file.hpp"
 
+#include <set>
+
 #include "json_check.hpp"
 
 namespace lfd {
@@ -69,7 +71,13 @@ Scene read_scene(const JsonDocument& document) {
   }
   const JsonView list = root.at("obstacles");
   if (list.size() > most_obstacles) list.fail("json.out_of_range", "there are over 10000 obstacles");
-  for (std::size_t i = 0; i < list.size(); ++i) scene.obstacles.push_back(read_solid(list.at(i)));
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    scene.obstacles.push_back(read_solid(list.at(i)));
+    const std::string& name = scene.obstacles.back().name;
+    if (name.empty() || names.insert(name).second) continue;
+    list.at(i).at("name").fail("scene.name_twice", "another obstacle is called '" + name + "' too");
+  }
   return scene;
 }
 
