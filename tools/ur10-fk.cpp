@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     const Pose base_in_frame = inverse(frame_in_base(robot, pose.frame));
     const Pose tool = tool_pose(pose);
     DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
-                               {.columns = {"q1", "q2", "q3", "q4", "q5", "q6"}, .extras = {}, .min_samples = 1});
+                               {.columns = joint_columns(), .extras = {}, .min_samples = 1});
     LabelledTable table(run.output(), {"t", "x", "y", "z", "qw", "qx", "qy", "qz"});
     for (std::size_t i = 0; i < source.recordings(); ++i) {
       const Recording recording = source.recording(i);

@@ -29,13 +29,7 @@ constexpr double much_closer = 1e-3;
 // A share of paths out of reach that is worth a word.
 constexpr double often_lost = 0.01;
 
-const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> position_names = {"x", "y", "z"};
-
-std::string prefix_of(const Labels& labels) {
-  const std::string words = describe(labels);
-  return words.empty() ? words : words + ": ";
-}
 
 /// The tool tip at every sample, in the base.
 Samples tips(const Robot& robot, const Samples& joints, const Pose& tool) {
@@ -140,8 +134,7 @@ std::string millimetres(double distance) {
 /// Refuses joints that the robot cannot take, and steps whose way between is anybody's guess.
 void judge_joints(const Recording& recording, const Robot& robot, Run& run) {
   const Samples& joints = recording.demonstration.trajectory.positions;
-  const std::string labels = describe(recording.demonstration.labels);
-  const std::string name = labels.empty() ? labels : labels + ": ";
+  const std::string name = prefix_of(recording.demonstration.labels);
   const Joints low = robot.limits.position.col(0), high = robot.limits.position.col(1);
   const auto beyond = [&](Eigen::Index k) {
     const Joints q = joints.row(k).transpose();
@@ -312,7 +305,7 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
   const Spreads spreads(request, arm.robot(), run);
 
   DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
-                             {.columns = joint_names, .extras = {}, .min_samples = 1, .gaps = false});
+                             {.columns = joint_columns(), .extras = {}, .min_samples = 1, .gaps = false});
   std::vector<std::string> columns = {"t", "link", "obstacle", "distance"};
   if (request.asks_probability()) columns.emplace_back("probability");
   LabelledTable table(run.output(), columns);

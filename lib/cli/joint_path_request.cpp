@@ -18,7 +18,6 @@
 namespace lfd::cli {
 namespace {
 
-const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> speed_names = {"qd1", "qd2", "qd3", "qd4", "qd5", "qd6"};
 const std::vector<std::string> acceleration_names = {"qdd1", "qdd2", "qdd3", "qdd4", "qdd5", "qdd6"};
 /// [rad/s^2], of movej in the URScript manual: 80 deg/s^2.
@@ -31,7 +30,7 @@ constexpr int most_halvings = 6;
 /// The branch that demonstrations keep; warns where they do not agree.
 int posture_of(const std::string& file, const InverseKinematics& arm, Run& run) {
   const DemonstrationSource source(CsvTable(open_inputs({file}), run.messages()), run.messages(),
-                                   {.columns = joint_names, .extras = {}, .min_samples = 1});
+                                   {.columns = joint_columns(), .extras = {}, .min_samples = 1});
   std::vector<Recording> recordings;
   std::vector<Samples> joints;
   for (std::size_t i = 0; i < source.recordings(); ++i) {
@@ -135,8 +134,8 @@ class Answer {
   }
 
   [[nodiscard]] std::vector<std::string> columns() const {
-    auto columns =
-        joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"}, joint_names);
+    auto columns = joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"},
+                          joint_columns());
     if (request_.speeds) columns = joined(columns, speed_names);
     if (request_.accelerations) columns = joined(columns, acceleration_names);
     if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
@@ -203,12 +202,11 @@ class Answer {
     JointPath moving = without_rest(path, at_rest);
     const Eigen::Index less = path.joints.rows() - moving.joints.rows();
     if (less > 0) {
-      const std::string words = describe(recording.demonstration.labels);
       run_.messages().note(
           "ik.rest_cut",
           fmt::format(
               "{}{} rows are left out: within {} rad of the first or last, or a tenth of that of the row kept before",
-              words.empty() ? "" : words + ": ", less, at_rest));
+              prefix_of(recording.demonstration.labels), less, at_rest));
     }
     return moving;
   }
@@ -224,8 +222,7 @@ class Answer {
     const Retiming law = retime(arm_.robot(), path.joints, options);
     const Vector before = path.times;
     path.times = law.times();
-    const std::string words = describe(recording.demonstration.labels);
-    run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", words.empty() ? "" : words + ": ",
+    run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", prefix_of(recording.demonstration.labels),
                                          law.duration(), before[before.size() - 1] - before[0]));
     run_.figure("duration", law.duration());
     JointRates rates{Samples(path.times.size(), 6), Samples(path.times.size(), 6), true};
@@ -259,11 +256,10 @@ class Answer {
       ++more;
     }
     if (more == 0) return;
-    const std::string words = describe(recording.demonstration.labels);
     run_.messages().note("ik.refined",
                          fmt::format("{}{} rows put between those given, which are too far apart for the hand to keep "
                                      "its path",
-                                     words.empty() ? "" : words + ": ", more),
+                                     prefix_of(recording.demonstration.labels), more),
                          recording.place(path.given[first]));
   }
 
