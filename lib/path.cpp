@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "lfdtools/error.hpp"
@@ -13,11 +12,10 @@
 #include "lfdtools/posture.hpp"
 #include "lfdtools/posture_graph.hpp"
 #include "lfdtools/singularity.hpp"
+#include "path_layers.hpp"
 
 namespace lfd {
 namespace {
-
-using Layer = std::vector<IkSolution>;
 
 void check(const std::vector<Pose>& flange, const Vector& times, const PathOptions& options) {
   const bool positive = options.tolerance > 0.0 && options.max_step > 0.0 && options.midpoint_tolerance > 0.0 &&
@@ -43,83 +41,6 @@ void check(const std::vector<Pose>& flange, const Vector& times, const PathOptio
     throw DataError("ur10.pose_not_rigid",
                     fmt::format("the pose of sample {} is not finite or its rotation is not orthonormal", t + 1));
   }
-}
-
-bool has_free_wrist(const Layer& layer) {
-  return std::any_of(layer.begin(), layer.end(), [](const IkSolution& s) { return s.wrist_free; });
-}
-
-bool same_arm(const IkSolution& a, const IkSolution& b) {
-  return (a.branch & 5) == (b.branch & 5);
-}
-
-/// Adds the solution of a singular wrist with q6 as near as can be to the given value, for the same shoulder and elbow.
-void add_with_q6(const InverseKinematics& arm, const Pose& pose, double tolerance, const IkSolution& like, double q6,
-                 Layer& layer) {
-  IkOptions options;
-  options.tolerance = tolerance;
-  options.seed = like.joints;
-  (*options.seed)[5] = q6;
-  for (const IkSolution& solution : arm(pose, options)) {
-    if (!solution.wrist_free || !same_arm(solution, like)) continue;
-    const bool known = std::any_of(layer.begin(), layer.end(), [&](const IkSolution& other) {
-      return same_arm(other, solution) && std::abs(wrap_angle(other.joints[5] - solution.joints[5])) < 1e-9;
-    });
-    if (!known) layer.push_back(solution);
-  }
-}
-
-/// Where the wrist is singular over samples first..last, q6 may be anything, and the solver's own choice need not meet
-/// that of the neighbours. Adds q6 going evenly in time from every neighbour before to every one after, or staying as
-/// on the one side there is, or, with no neighbours, at eight constant values.
-void connect_free_wrists(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
-                         double tolerance, std::vector<Layer>& layers, std::size_t first, std::size_t last) {
-  const bool has_before = first > 0, has_after = last + 1 < layers.size();
-  const double begin = times[static_cast<Eigen::Index>(has_before ? first - 1 : first)];
-  const double end = times[static_cast<Eigen::Index>(has_after ? last + 1 : last)];
-  for (std::size_t t = first; t <= last; ++t) {
-    const auto add = [&](const IkSolution& like, double q6) {
-      add_with_q6(arm, flange[t], tolerance, like, q6, layers[t]);
-    };
-    const double share = (times[static_cast<Eigen::Index>(t)] - begin) / std::max(end - begin, 1e-300);
-    if (has_before && has_after) {
-      for (const IkSolution& before : layers[first - 1]) {
-        for (const IkSolution& after : layers[last + 1]) {
-          if (!same_arm(before, after)) continue;
-          add(before, before.joints[5] + share * wrap_angle(after.joints[5] - before.joints[5]));
-        }
-      }
-    } else if (has_before || has_after) {
-      const Layer& side = has_before ? layers[first - 1] : layers[last + 1];
-      for (const IkSolution& neighbour : side) add(neighbour, neighbour.joints[5]);
-    } else {
-      const Layer own = layers[t];
-      for (const IkSolution& like : own) {
-        for (int eighth = 0; eighth < 8; ++eighth) add(like, eighth * std::numbers::pi / 4.0);
-      }
-    }
-  }
-}
-
-std::vector<Layer> solve_layers(const InverseKinematics& arm, const std::vector<Pose>& flange, const Vector& times,
-                                const PathOptions& options) {
-  std::vector<Layer> layers;
-  layers.reserve(flange.size());
-  IkOptions ik;
-  ik.tolerance = options.tolerance;
-  ik.seed = options.seed;
-  for (const Pose& pose : flange) {
-    const IkSolutions found = arm(pose, ik);
-    layers.emplace_back(found.begin(), found.end());
-  }
-  for (std::size_t first = 0; first < layers.size(); ++first) {
-    if (!has_free_wrist(layers[first])) continue;
-    std::size_t last = first;
-    while (last + 1 < layers.size() && has_free_wrist(layers[last + 1])) ++last;
-    connect_free_wrists(arm, flange, times, options.tolerance, layers, first, last);
-    first = last;
-  }
-  return layers;
 }
 
 /// How far the hand is from the way between two poses when every joint is midway between its angles.
@@ -213,21 +134,22 @@ JointPath solve_samples(const InverseKinematics& arm, const PathSampling& sampli
   path.joints.resize(0, 6);
   path.times = sampling.times();
   path.given = sampling.given();
-  std::vector<Layer> layers = solve_layers(arm, flange, path.times, options);
+  std::vector<SolutionLayer> layers = solve_layers(arm, flange, path.times, {options.seed, options.tolerance});
   for (std::size_t t = 0; t < layers.size(); ++t) {
     if (layers[t].empty()) path.unreachable.push_back(path.given[t]);
   }
   if (!path.unreachable.empty()) {
     const Eigen::Index sample = path.unreachable.front();
     const auto row = static_cast<std::size_t>(
-        std::find_if(layers.begin(), layers.end(), [](const Layer& layer) { return layer.empty(); }) - layers.begin());
+        std::find_if(layers.begin(), layers.end(), [](const SolutionLayer& layer) { return layer.empty(); }) -
+        layers.begin());
     fail(path,
          {PathStatus::unreachable, sample,
           fmt::format("sample {} is out of reach: {}", sample + 1, out_of_reach_words(arm.geometry(), flange[row]))});
     return path;
   }
   for (std::size_t t = 0; options.branch && t < layers.size(); ++t) {
-    Layer& layer = layers[t];
+    SolutionLayer& layer = layers[t];
     const auto leaves = [&](const IkSolution& s) { return !keeps_branch(arm, s.joints, *options.branch); };
     layer.erase(std::remove_if(layer.begin(), layer.end(), leaves), layer.end());
     for (IkSolution& solution : layer) solution.branch = *options.branch;

@@ -18,6 +18,11 @@ std::string describe(const Labels& labels) {
   return words;
 }
 
+std::string prefix_of(const Labels& labels) {
+  const std::string words = describe(labels);
+  return words.empty() ? words : words + ": ";
+}
+
 void check(const Trajectory& trajectory) {
   const auto& t = trajectory.times;
   if (trajectory.positions.rows() != t.size()) {

@@ -9,14 +9,13 @@ using namespace lfd;
 
 namespace {
 
-const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
 const std::vector<std::string> pose_names = {"x", "y", "z", "qw", "qx", "qy", "qz"};
 
 /// Every row for itself, as those of `ur10-ik --all`, where several solutions stand at one time: no path, so times need
 /// not rise and signs of quaternions not go on.
 template <class PoseOf>
 void write_solutions(const CsvTable& table, PoseOf pose_of, Output& output) {
-  const std::vector<std::string> before{"t", "solution"}, read = joined(before, joint_names);
+  const std::vector<std::string> before{"t", "solution"}, read = joined(before, joint_columns());
   LabelledTable out(output, joined(before, pose_names));
   for (std::size_t i = 0; i < table.groups().size(); ++i) {
     const Samples values = table.read_group(i, read).values;
@@ -53,7 +52,7 @@ int main(int argc, char** argv) {
       return;
     }
     const DemonstrationSource source(std::move(input), run.messages(),
-                                     {.columns = joint_names, .extras = {}, .min_samples = 1});
+                                     {.columns = joint_columns(), .extras = {}, .min_samples = 1});
     LabelledTable table(run.output(), joined({"t"}, pose_names));
     for (std::size_t i = 0; i < source.recordings(); ++i) {
       const Recording recording = source.recording(i);

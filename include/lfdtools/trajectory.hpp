@@ -33,6 +33,8 @@ struct Labels {
 
 /// Words such as `target 3, demo 2` for messages; empty when there are no labels.
 [[nodiscard]] std::string describe(const Labels& labels);
+/// The same in front of a message, `target 3, demo 2: `; empty when there are no labels.
+[[nodiscard]] std::string prefix_of(const Labels& labels);
 
 /// One demonstration.
 struct Demonstration {

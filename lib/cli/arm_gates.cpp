@@ -67,18 +67,16 @@ void judge_start(const JointPath& path, const Recording& recording, const Joints
   Eigen::Index joint = 0;
   const double off = (path.joints.row(0).transpose() - current).cwiseAbs().maxCoeff(&joint);
   if (!(off > tolerance)) return;
-  const std::string labels = describe(recording.demonstration.labels);
-  run.refuse(
-      "start",
-      fmt::format("{}{}joint {} starts at {:.4g} rad, {:.3g} rad from the {:.4g} rad of --seed-joints, over {:g}",
-                  labels, labels.empty() ? "" : ": ", joint + 1, path.joints(0, joint), off, current[joint], tolerance),
-      recording.place(0));
+  run.refuse("start",
+             fmt::format("{}joint {} starts at {:.4g} rad, {:.3g} rad from the {:.4g} rad of --seed-joints, over {:g}",
+                         prefix_of(recording.demonstration.labels), joint + 1, path.joints(0, joint), off,
+                         current[joint], tolerance),
+             recording.place(0));
 }
 
 bool judge(const JointPath& path, const JointRates& rates, const Recording& recording, const Robot& robot,
            const Pose& tool, const ArmLimits& limits, Run& run, const std::string& elsewhere) {
-  const Labels& labels = recording.demonstration.labels;
-  const std::string name = describe(labels).empty() ? std::string() : describe(labels) + ": ";
+  const std::string name = prefix_of(recording.demonstration.labels);
   const auto refuse = [&](std::string_view gate, Eigen::Index sample, const std::string& text) {
     run.refuse(gate, name + text, recording.place(sample));
   };

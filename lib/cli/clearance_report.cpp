@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lfdtools/io/covariance_file.hpp"
+#include "hand_spread_source.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/labelled_table.hpp"
 #include "lfdtools/io/robot_file.hpp"
@@ -22,115 +22,10 @@ constexpr double tolerance = 1e-4;
 constexpr double longest_step = 0.5;
 // Of joints written with few digits [rad].
 constexpr double rounding = 1e-6;
-// A covariance whose mean is further from the joints' hand than this belongs to another tool, frame or motion [m].
-constexpr double same_path = 1e-3;
 // Where the way between samples comes this much closer than they do, their probability misses it [m].
 constexpr double much_closer = 1e-3;
 // A share of paths out of reach that is worth a word.
 constexpr double often_lost = 0.01;
-
-const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
-const std::vector<std::string> position_names = {"x", "y", "z"};
-
-std::string prefix_of(const Labels& labels) {
-  const std::string words = describe(labels);
-  return words.empty() ? words : words + ": ";
-}
-
-/// The tool tip at every sample, in the base.
-Samples tips(const Robot& robot, const Samples& joints, const Pose& tool) {
-  Samples positions(joints.rows(), 3);
-  for (Eigen::Index k = 0; k < joints.rows(); ++k) {
-    positions.row(k) = (forward_kinematics(robot, joints.row(k).transpose()) * tool).position.transpose();
-  }
-  return positions;
-}
-
-/// The spread of one path, and what it is checked against.
-class Spreads {
- public:
-  Spreads(const ClearanceRequest& request, const Robot& robot, Run& run)
-      : request_(request), robot_(robot), run_(run), frame_(frame_in_base(robot, request.pose.frame)) {
-    if (request.covariance.empty()) return;
-    std::vector<Input> inputs;
-    inputs.push_back(Input(request.covariance));
-    JsonStream stream(std::move(inputs), run.messages(), run.json_options());
-    while (const auto document = stream.next()) {
-      files_.push_back(read_covariance(*document));
-      if (files_.back().header.columns != position_names) {
-        document->root().at("columns").fail("clearance.covariance_columns", "the signals must be x, y, z");
-      }
-    }
-  }
-
-  [[nodiscard]] HandSpread of(const Recording& recording, const Samples& positions) const {
-    HandSpread spread;
-    if (!files_.empty()) {
-      const CovarianceFile& file = file_of(recording, positions);
-      try {
-        if (file.calibration.size() == 0) {
-          run_.messages().warning(
-              "clearance.not_calibrated",
-              request_.covariance + " has no calibration: chances are what the process says of itself");
-        }
-        if (request_.goal_sd && file.goal_factor.size() > 0) {
-          run_.messages().warning("clearance.goal_twice",
-                                  request_.covariance + " holds an uncertain goal already, and --goal-sd adds to it");
-        }
-        spread = hand_spread(calibrated(file), frame_.rotation);
-      } catch (const DataError& error) {
-        throw DataError(error.id(), error.what(), {request_.covariance, 0, 0, "/covariance"});
-      }
-    }
-    if (!request_.goal_sd) return spread;
-    const auto& sd = *request_.goal_sd;
-    const Vector3 each = sd.size() == 1 ? Vector3(Vector3::Constant(sd[0])) : Vector3(sd[0], sd[1], sd[2]);
-    const HandSpread shift = hand_shift(each, share_of_way(positions), frame_.rotation);
-    return files_.empty() ? shift : together(spread, shift);
-  }
-
- private:
-  const CovarianceFile& file_of(const Recording& recording, const Samples& positions) const {
-    const auto& target = recording.demonstration.labels.target;
-    const auto found = std::find_if(files_.begin(), files_.end(), [&](const CovarianceFile& file) {
-      return file.header.labels.target == target || (files_.size() == 1 && !(file.header.labels.target && target));
-    });
-    if (found == files_.end()) {
-      throw DataError("clearance.covariance_target",
-                      fmt::format("{} has no covariance for target {}", request_.covariance, target.value_or("(none)")),
-                      recording.place(0));
-    }
-    // Times may differ, as those of a retimed path do: the samples are held against each other by their places below.
-    const Eigen::Index samples = recording.demonstration.trajectory.samples();
-    if (found->times.size() != samples) {
-      throw DataError("clearance.covariance_samples",
-                      fmt::format("{} is of {} samples, the joints have {}: ur10-ik leaves out or puts in rows with "
-                                  "--retime and without --given-rows, so take the probability from joints with neither",
-                                  request_.covariance, found->times.size(), samples),
-                      recording.place(0));
-    }
-    const Samples mean = (found->mean * frame_.rotation.transpose()).rowwise() + frame_.position.transpose();
-    Eigen::Index sample = 0;
-    const double off = (mean - positions).rowwise().norm().maxCoeff(&sample);
-    if (off > same_path) {
-      const std::string text =
-          fmt::format("{}the hand is {:.1f} mm from the covariance's motion: another --tool or --frame?",
-                      prefix_of(recording.demonstration.labels), 1e3 * off);
-      if (request_.max_probability) {
-        run_.refuse("mean_differs", text, recording.place(sample));
-      } else {
-        run_.messages().warning("clearance.mean_differs", text, recording.place(sample));
-      }
-    }
-    return *found;
-  }
-
-  const ClearanceRequest& request_;
-  const Robot& robot_;
-  Run& run_;
-  Pose frame_;
-  std::vector<CovarianceFile> files_;
-};
 
 std::string millimetres(double distance) {
   return distance < 0 ? fmt::format("{:.1f} mm inside", -1e3 * distance)
@@ -140,8 +35,7 @@ std::string millimetres(double distance) {
 /// Refuses joints that the robot cannot take, and steps whose way between is anybody's guess.
 void judge_joints(const Recording& recording, const Robot& robot, Run& run) {
   const Samples& joints = recording.demonstration.trajectory.positions;
-  const std::string labels = describe(recording.demonstration.labels);
-  const std::string name = labels.empty() ? labels : labels + ": ";
+  const std::string name = prefix_of(recording.demonstration.labels);
   const Joints low = robot.limits.position.col(0), high = robot.limits.position.col(1);
   const auto beyond = [&](Eigen::Index k) {
     const Joints q = joints.row(k).transpose();
@@ -232,55 +126,6 @@ std::vector<LinkClearance> rows_of(const ArmClearance& arm, const Joints& q, boo
 
 }  // namespace
 
-void declare_clearance(Program& program, ClearanceRequest& request) {
-  program.reads("joints CSV with q1..q6").uses_seed();
-  program.text("--scene", request.scene, "scene file, by name or path");
-  program.text("--robot", request.robot, "robot file with links, by name or path");
-  program.flag("--self", request.self, "the arm's own links count as obstacles too");
-  program.number("--margin", request.margin, not_negative, "least distance from an obstacle that passes [m]");
-  program.numbers("--tool", request.pose.tool, {3, 7},
-                  "pose of the tool tip in the flange frame, x,y,z[,w,x,y,z]: one more link");
-  program.number("--tool-radius", request.tool_radius, positive, "radius of that link [m]");
-  program.path("--covariance", request.covariance,
-               "how far the hand may be off, as skill-generate --covariance writes it: add a column probability");
-  program.numbers("--goal-sd", request.goal_sd, {1, 3}, "standard deviation of the goal, one or x,y,z [m]: the same");
-  program.text("--frame", request.pose.frame,
-               "frame of covariance and goal: base, base_link, or one of the robot file's");
-  program.number("--max-probability", request.max_probability, Range<double>{0.0, 1.0},
-                 "largest probability that the path touches anything");
-  program.gate("clearance", "a link closer than --margin to an obstacle, at a sample or between two")
-      .gate("self_clearance", "with --self: a link inside another of the arm's")
-      .gate("probability", "the path touches with more than --max-probability, where that is given")
-      .gate("mean_differs", "with --max-probability: the covariance is that of another hand path")
-      .gate("joint_range", "a joint outside the robot's range")
-      .gate("joint_step", "a joint moves by over 0.5 rad between two rows");
-  program.check([&program, &request] {
-    if (request.scene.empty() && !request.self) {
-      throw UsageError("usage.missing", "there is nothing to keep clear of: give --scene, --self, or both");
-    }
-    if (program.given("--tool-radius") && !request.pose.tool) {
-      throw UsageError("usage.missing", "--tool-radius needs --tool");
-    }
-    if (request.max_probability && !request.asks_probability()) {
-      throw UsageError("usage.missing", "--max-probability needs --covariance or --goal-sd");
-    }
-    if (program.given("--frame") && !request.asks_probability()) {
-      throw UsageError("usage.missing", "--frame, that of covariance and goal, needs --covariance or --goal-sd");
-    }
-    if (request.goal_sd &&
-        std::any_of(request.goal_sd->begin(), request.goal_sd->end(), [](double sd) { return sd < 0; })) {
-      throw UsageError("usage.value", "--goal-sd: a standard deviation is not negative");
-    }
-    (void)tool_pose(request.pose);
-  });
-  const std::string elbow_up = "ur10-ik --rpy -1.5708,0,0 --seed-joints=-1.19,-1.77,1.82,-0.06,1.95,-3.14 motions.csv";
-  program.example(elbow_up + " | arm-clearance --scene table", "every link's distance from the table");
-  program.example(elbow_up + " | arm-clearance --scene table --self --margin 0.01",
-                  "refused if anything comes closer than 1 cm to the table, or the arm into itself");
-  program.example(elbow_up + " | arm-clearance --scene table --goal-sd 0.005 --max-probability 0.001",
-                  "refused if it may touch, where goals are known to 5 mm");
-}
-
 void report_clearance(const ClearanceRequest& request, Run& run) {
   Robot robot = load_robot_with_links(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
   Scene scene;
@@ -309,10 +154,10 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
   if (request.pose.tool) held = tool_capsule(tool, request.tool_radius);
   const std::vector<Solid> solids = scene.in_base(robot);
   const ArmClearance arm(std::move(robot), solids, held);
-  const Spreads spreads(request, arm.robot(), run);
+  const HandSpreadSource spreads(request, arm.robot(), run);
 
   DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
-                             {.columns = joint_names, .extras = {}, .min_samples = 1, .gaps = false});
+                             {.columns = joint_columns(), .extras = {}, .min_samples = 1, .gaps = false});
   std::vector<std::string> columns = {"t", "link", "obstacle", "distance"};
   if (request.asks_probability()) columns.emplace_back("probability");
   LabelledTable table(run.output(), columns);
@@ -333,8 +178,7 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
     }
     Touching chances;
     if (request.asks_probability()) {
-      const HandSpread spread = spreads.of(recording, tips(arm.robot(), path.positions, tool));
-      chances = touching(arm, path.positions, spread, tool, {.self = request.self, .seed = run.seed()});
+      chances = touching(arm, path.positions, spreads.of(recording), tool, {.self = request.self, .seed = run.seed()});
       const std::string text =
           fmt::format("{}the path touches with probability {:.3g}{}", prefix_of(recording.demonstration.labels),
                       chances.path.probability,

@@ -1,3 +1,4 @@
+// The options of ur10-ik.
 #include <fmt/format.h>
 
 #include "lfdtools/cli/joint_path_request.hpp"

@@ -7,62 +7,22 @@
 #include <numbers>
 #include <utility>
 
-#include "lfdtools/interpolation.hpp"
+#include "demonstrated_branch.hpp"
+#include "joint_path_rows.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/labelled_table.hpp"
 #include "lfdtools/io/robot_file.hpp"
-#include "lfdtools/posture.hpp"
 #include "lfdtools/retime.hpp"
-#include "lfdtools/singularity.hpp"
 
 namespace lfd::cli {
 namespace {
 
-const std::vector<std::string> joint_names = {"q1", "q2", "q3", "q4", "q5", "q6"};
-const std::vector<std::string> speed_names = {"qd1", "qd2", "qd3", "qd4", "qd5", "qd6"};
-const std::vector<std::string> acceleration_names = {"qdd1", "qdd2", "qdd3", "qdd4", "qdd5", "qdd6"};
 /// [rad/s^2], of movej in the URScript manual: 80 deg/s^2.
 constexpr double usual_acceleration = 1.4;
 /// A millimetre at a metre's reach: a generated motion strays by half of one before it settles within 0.1 mm.
 constexpr double at_rest = 1e-3;
 /// An interval may become 64.
 constexpr int most_halvings = 6;
-
-/// The branch that demonstrations keep; warns where they do not agree.
-int posture_of(const std::string& file, const InverseKinematics& arm, Run& run) {
-  const DemonstrationSource source(CsvTable(open_inputs({file}), run.messages()), run.messages(),
-                                   {.columns = joint_names, .extras = {}, .min_samples = 1});
-  std::vector<Recording> recordings;
-  std::vector<Samples> joints;
-  for (std::size_t i = 0; i < source.recordings(); ++i) {
-    recordings.push_back(source.recording(i));
-    joints.push_back(recordings.back().demonstration.trajectory.positions);
-  }
-  const DemonstratedPosture posture = demonstrated_posture(arm, joints);
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const std::string words = describe(recordings[i].demonstration.labels);
-    const std::string name = words.empty() ? "the demonstration" : words;
-    const auto warn = [&](std::string_view id, const std::string& text) {
-      run.messages().warning(id, name + text, recordings[i].place(0));
-    };
-    if (posture.branches[i] != posture.branch) {
-      warn("ik.posture_differs", fmt::format(" is in posture {}, most are in {}", branch_name(posture.branches[i]),
-                                             branch_name(posture.branch)));
-    }
-    if (posture.samples_elsewhere[i] > 0) {
-      warn("ik.posture_changes",
-           fmt::format(" leaves its posture {} in {} of {} samples", branch_name(posture.branches[i]),
-                       posture.samples_elsewhere[i], joints[i].rows()));
-    }
-    if (posture.samples_singular[i] > 0) {
-      warn("ik.posture_singular",
-           fmt::format(" is near a singularity in {} of {} samples, which say nothing of posture",
-                       posture.samples_singular[i], joints[i].rows()));
-    }
-  }
-  run.detail("ik.posture", fmt::format("the demonstrations keep {}", branch_name(posture.branch)));
-  return posture.branch;
-}
 
 /// Paths of one run.
 class Answer {
@@ -72,7 +32,7 @@ class Answer {
     warn_of_degrees();
     (void)frame_in_base(arm_.robot(), request.pose.frame);
     if (request.seed) options_.seed = Eigen::Map<const Joints>(request.seed->data());
-    if (!request.posture.empty()) options_.branch = posture_of(request.posture, arm_, run);
+    if (!request.posture.empty()) options_.branch = demonstrated_branch(request.posture, arm_, run);
     options_.refinements = request.given_rows ? 0 : most_halvings;
     if (request.retime) options_.curve_rest = at_rest;
   }
@@ -97,7 +57,7 @@ class Answer {
     const DemonstrationSource source(
         std::move(table), run_.messages(),
         {.columns = {"x", "y", "z"}, .extras = joined(orientation, passed_), .min_samples = 1});
-    LabelledTable out(run_.output(), columns());
+    LabelledTable out(run_.output(), joint_path_columns(request_, passed_));
     for (std::size_t i = 0; i < source.recordings(); ++i) {
       const Recording recording = source.recording(i);
       const auto poses = flange_poses(recording, quaternions_, arm_.robot(), request_.pose);
@@ -134,16 +94,6 @@ class Answer {
     look("--seed-joints", request_.seed);
   }
 
-  [[nodiscard]] std::vector<std::string> columns() const {
-    auto columns =
-        joined(request_.all ? std::vector<std::string>{"t", "solution"} : std::vector<std::string>{"t"}, joint_names);
-    if (request_.speeds) columns = joined(columns, speed_names);
-    if (request_.accelerations) columns = joined(columns, acceleration_names);
-    if (request_.diagnostics) columns = joined(columns, {"branch", "residual", "condition"});
-    if (request_.singularities) columns = joined(columns, {"manipulability", "shoulder", "elbow", "wrist"});
-    return request_.all ? columns : joined(columns, passed_);
-  }
-
   void write_solutions(const Recording& recording, const std::vector<Pose>& poses, LabelledTable& out) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -154,15 +104,8 @@ class Answer {
                                 recording.place(row));
       }
       for (std::size_t k = 0; k < found.size(); ++k) {
-        Samples cells(1, 8);
-        const Joints& q = found[k].joints;
-        cells << recording.demonstration.trajectory.times[row], static_cast<double>(k + 1), q.transpose();
-        if (request_.diagnostics) {
-          const double condition = condition_number(jacobian(arm_.robot(), q));
-          cells = beside(cells, Eigen::RowVector3d(found[k].branch, found[k].residual, condition));
-        }
-        if (request_.singularities) cells = beside(cells, singularities(q));
-        out.write(recording.demonstration.labels, cells);
+        const double time = recording.demonstration.trajectory.times[row];
+        out.write(recording.demonstration.labels, solution_row(arm_, found[k], k + 1, time, request_));
       }
     }
   }
@@ -188,11 +131,7 @@ class Answer {
     }
     warn_of_postures(path, recording);
     report_rows(recording, path);
-    Samples rows = beside(path.times.array() + start, path.joints);
-    if (request_.speeds) rows = beside(rows, rates.speeds);
-    if (request_.accelerations) rows = beside(rows, rates.accelerations);
-    if (request_.diagnostics) rows = beside(rows, diagnostics(path));
-    if (request_.singularities) rows = beside(rows, singularities(path));
+    Samples rows = path_rows(arm_, path, start, rates, request_);
     if (!passed_.empty()) {
       rows = beside(rows, between(given, recording.extras.rightCols(static_cast<Eigen::Index>(passed_.size())), times));
     }
@@ -203,12 +142,11 @@ class Answer {
     JointPath moving = without_rest(path, at_rest);
     const Eigen::Index less = path.joints.rows() - moving.joints.rows();
     if (less > 0) {
-      const std::string words = describe(recording.demonstration.labels);
       run_.messages().note(
           "ik.rest_cut",
           fmt::format(
               "{}{} rows are left out: within {} rad of the first or last, or a tenth of that of the row kept before",
-              words.empty() ? "" : words + ": ", less, at_rest));
+              prefix_of(recording.demonstration.labels), less, at_rest));
     }
     return moving;
   }
@@ -224,8 +162,7 @@ class Answer {
     const Retiming law = retime(arm_.robot(), path.joints, options);
     const Vector before = path.times;
     path.times = law.times();
-    const std::string words = describe(recording.demonstration.labels);
-    run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", words.empty() ? "" : words + ": ",
+    run_.detail("ik.retime", fmt::format("{}{:.4g} s instead of {:.4g} s", prefix_of(recording.demonstration.labels),
                                          law.duration(), before[before.size() - 1] - before[0]));
     run_.figure("duration", law.duration());
     JointRates rates{Samples(path.times.size(), 6), Samples(path.times.size(), 6), true};
@@ -259,55 +196,11 @@ class Answer {
       ++more;
     }
     if (more == 0) return;
-    const std::string words = describe(recording.demonstration.labels);
     run_.messages().note("ik.refined",
                          fmt::format("{}{} rows put between those given, which are too far apart for the hand to keep "
                                      "its path",
-                                     words.empty() ? "" : words + ": ", more),
+                                     prefix_of(recording.demonstration.labels), more),
                          recording.place(path.given[first]));
-  }
-
-  /// By the spline through the joints, so that speeds do not lag half a sample.
-  static JointRates rates_along(const JointPath& path) {
-    const Eigen::Index T = path.joints.rows();
-    if (T < 2) return {Samples::Zero(T, 6), Samples::Zero(T, 6)};
-    const CubicSpline spline(path.times, path.joints);
-    return {spline.derivative(path.times), spline.second_derivatives()};
-  }
-
-  static Samples diagnostics(const JointPath& path) {
-    Samples figures(path.times.size(), 3);
-    for (Eigen::Index t = 0; t < figures.rows(); ++t) {
-      figures.row(t) << path.branch[static_cast<std::size_t>(t)], path.residual[t], path.condition[t];
-    }
-    return figures;
-  }
-
-  [[nodiscard]] Samples singularities(const JointPath& path) const {
-    Samples figures(path.times.size(), 4);
-    for (Eigen::Index t = 0; t < figures.rows(); ++t) {
-      figures.row(t) = singularities(path.joints.row(t).transpose());
-    }
-    return figures;
-  }
-
-  [[nodiscard]] Eigen::RowVector4d singularities(const Joints& q) const {
-    const SingularityDistances d = singularity_distances(arm_.geometry(), q);
-    return {manipulability(jacobian(arm_.robot(), q)), d.shoulder, d.elbow, d.wrist};
-  }
-
-  /// Values at the given times, at others linearly between.
-  static Samples between(const Vector& given, const Samples& values, const Vector& times) {
-    Samples rows(times.size(), values.cols());
-    Eigen::Index k = 0;
-    for (Eigen::Index t = 0; t < times.size(); ++t) {
-      while (given[k] < times[t]) ++k;
-      rows.row(t) = values.row(k);
-      if (given[k] == times[t]) continue;
-      const double share = (times[t] - given[k - 1]) / (given[k] - given[k - 1]);
-      rows.row(t) = (1.0 - share) * values.row(k - 1) + share * values.row(k);
-    }
-    return rows;
   }
 
   const JointPathRequest& request_;

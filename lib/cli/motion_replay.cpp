@@ -50,7 +50,7 @@ void replay(std::vector<DmpFile> files, const MotionRequest& request, Run& run) 
     run.figure("duration", dmp.tau);
     run.figure("duration_sd", 0);
     const Motion motion = generate(course, request.dt);
-    if (request.approach) report_approach(course, motion, prefix_of(goal.labels), request, run);
+    if (request.approach) report_approach(course, motion, target_prefix(goal.labels), request, run);
     table.write(goal.labels, rows_of(motion, request));
   }
 }

@@ -43,7 +43,7 @@ class Answer {
 
   void motion(const Goal& goal, std::size_t number, LabelledTable& table) {
     gates(goal);
-    const std::string name = prefix_of(goal.labels);
+    const std::string name = target_prefix(goal.labels);
     MotionPosterior posterior;
     if (!request_.needs_posterior().empty() || !constraints_.empty()) {
       posterior = predict_motion(predictor_, goal, constraints_);
@@ -90,7 +90,7 @@ class Answer {
  private:
   void gates(const Goal& goal) {
     const Skill& skill = file_.skill;
-    const std::string name = prefix_of(goal.labels);
+    const std::string name = target_prefix(goal.labels);
     if (!goal.start && skill.start_spread > start_tolerance) {
       run_.refuse("start", fmt::format("{}the demonstrations start up to {:.1f} mm apart, so a goal needs a start",
                                        name, 1e3 * skill.start_spread));

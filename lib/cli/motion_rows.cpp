@@ -10,7 +10,7 @@
 
 namespace lfd::cli {
 
-std::string prefix_of(const Labels& labels) {
+std::string target_prefix(const Labels& labels) {
   return labels.target ? describe(labels) + ": " : std::string();
 }
 

@@ -7,7 +7,7 @@
 namespace lfd::cli {
 
 /// `target 3: ` for messages; empty without a target.
-[[nodiscard]] std::string prefix_of(const Labels& labels);
+[[nodiscard]] std::string target_prefix(const Labels& labels);
 
 /// Columns of the trajectory that the request asks for.
 [[nodiscard]] std::vector<std::string> value_columns(const std::vector<std::string>& columns,

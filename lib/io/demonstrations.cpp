@@ -17,7 +17,6 @@ constexpr double far_start = 0.02;                   // [m]
 constexpr double far_away = 20;                      // [m]: no hand reaches so far
 constexpr double far_turned = 6 * std::numbers::pi;  // [rad]: no joint turns so far
 const std::vector<std::string> position_columns{"x", "y", "z"};
-const std::vector<std::string> joint_columns{"q1", "q2", "q3", "q4", "q5", "q6"};
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -82,7 +81,7 @@ void warn_of_sampling(const Recording& recording, bool gaps, Messages& messages)
 
 /// Positions that no hand reaches in metres, joints that do not turn so far in radians. @return whether there were any
 bool warn_of_unit(const Recording& recording, const std::vector<std::string>& columns, Messages& messages) {
-  const bool joints = columns == joint_columns;
+  const bool joints = columns == joint_columns();
   if (columns != position_columns && !joints) return false;
   Eigen::Index row = 0, column = 0;
   const double largest = recording.demonstration.trajectory.positions.cwiseAbs().maxCoeff(&row, &column);
@@ -124,6 +123,11 @@ void warn_of_starts(const Pool& pool, Messages& messages) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& joint_columns() {
+  static const std::vector<std::string> names{"q1", "q2", "q3", "q4", "q5", "q6"};
+  return names;
+}
 
 std::vector<std::string> signal_columns(const CsvTable& table) {
   const auto& position = position_columns;

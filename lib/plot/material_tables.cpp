@@ -12,8 +12,6 @@
 namespace lfd::plot {
 namespace {
 
-const std::vector<std::string> joint_columns{"q1", "q2", "q3", "q4", "q5", "q6"};
-
 bool has_all(const CsvTable& table, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return table.has(name); });
 }
@@ -37,7 +35,7 @@ void MaterialReader::adopt(const std::vector<std::string>& signals, const std::s
 std::vector<std::string> MaterialReader::curve_signals(const CsvTable& table) const {
   if (!options_.columns.empty()) return options_.columns;
   // Of a joints table the joints; speeds and diagnostics on request.
-  if (!has_all(table, {"x", "y", "z"}) && has_all(table, joint_columns)) return joint_columns;
+  if (!has_all(table, {"x", "y", "z"}) && has_all(table, joint_columns())) return joint_columns();
   return {};
 }
 

@@ -10,8 +10,9 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <ctime>
 #include <numbers>
+
+#include "processor_time.hpp"
 
 namespace lfd::scenes {
 namespace {
@@ -24,12 +25,6 @@ constexpr unsigned iterations = 20000;
 Vector values(const ob::State* state, unsigned n) {
   const double* v = state->as<ob::RealVectorStateSpace::StateType>()->values;
   return Eigen::Map<const Vector>(v, n);
-}
-
-double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// @param resolution  of the checks, as a share of the space's extent   @param step  between the points returned

@@ -9,101 +9,67 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <ctime>
 #include <map>
 
-#include "banded_skill.hpp"
-#include "lesson.hpp"
+#include "chances.hpp"
 #include "lesson_files.hpp"
 #include "lfdtools/io/data_files.hpp"
 #include "lfdtools/io/robot_file.hpp"
 #include "lfdtools/methods.hpp"
 #include "lfdtools/metrics.hpp"
-#include "lfdtools/touching.hpp"
 #include "lfdtools/validation.hpp"
 #include "planner.hpp"
-#include "verdict.hpp"
+#include "processor_time.hpp"
+#include "studied_scene.hpp"
 
 using namespace lfd;
 using namespace lfd::scenes;
 
 namespace {
 
-double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// How far the goal may be off in judge_chances, in each axis [m].
-constexpr double goal_sd = 0.02;
-
-Vector normals(Eigen::Index n, Random random) {
-  Vector z(n);
-  for (double& value : z) value = random.normal();
-  return z;
-}
-
+/// The lesson of one scene, what is learnt from it, and what else is judged beside it.
 class Study {
  public:
   Study(bool two_ways, int number, const Robot& robot)
-      : number_(number),
-        random_(Random(two_ways ? 2 : 1).split(static_cast<std::uint64_t>(number))),
-        task_(draw_task(two_ways, random_.split(1))),
-        teacher_(robot, task_, margin),
-        fcl_(robot, task_.obstacles, task_.ground) {}
+      : random_(Random(two_ways ? 2 : 1).split(static_cast<std::uint64_t>(number))),
+        scene_(two_ways, number, robot, random_.split(1)),
+        task_(scene_.task()) {}
 
   void run(const std::string& folder) {
-    if (const std::string reason = teach(teacher_, task_, lesson_); !reason.empty()) return set_aside(reason);
+    if (const std::string reason = scene_.plan_lesson(); !reason.empty()) return scene_.set_aside(reason);
     int blocked = 0;
     for (const Hole& hole : task_.new_holes) {
-      const auto least =
-          teacher_.clearance(straight_line(task_.start, hole.position, linspace(0, 1, 101)), lesson_.branch);
+      const auto least = scene_.teacher().clearance(straight_line(task_.start, hole.position, linspace(0, 1, 101)),
+                                                    scene_.lesson().branch);
       blocked += !least || *least < 0 ? 1 : 0;
     }
-    if (blocked < 3) return set_aside("straight_way_clear");
+    if (blocked < 3) return scene_.set_aside("straight_way_clear");
     for (std::size_t i = 0; i < task_.holes.size(); ++i) {
-      auto shown = demonstrate(teacher_, lesson_.meant[i], lesson_.branch, random_.split(2).split(i));
-      if (shown.size() < repetitions) return set_aside("noise_collides");
+      auto shown =
+          demonstrate(scene_.teacher(), scene_.lesson().meant[i], scene_.lesson().branch, random_.split(2).split(i));
+      if (shown.size() < repetitions) return scene_.set_aside("noise_collides");
       targets_.push_back({{task_.holes[i].target, {}, {}, {}}, std::move(shown)});
     }
-    if (!folder.empty()) write_lesson(folder, task_, teacher_, lesson_.branch, targets_);
+    if (!folder.empty()) write_lesson(folder, task_, scene_.teacher(), scene_.lesson().branch, targets_);
     judge_methods();
     std::vector<SkillRow> rows;
     for (const auto& target : training_) {
       for (const auto& example : target.examples) rows.push_back({target.labels, example.primitive});
     }
     const BandedSkill banded(std::move(rows));
-    judge_chances(banded);
+    judge_chances(scene_, banded, skill_, skill_paths_, random_.split(3));
     judge_parted(banded);
     judge_controls();
     judge_planners();
   }
 
  private:
-  void set_aside(const std::string& reason) const {
-    fmt::print("{},{},,,set_aside,{},,,,,,,\n", number_, task_.ways.size(), reason);
-  }
-
-  void row(const std::string& method, const std::string& target, const Verdict& verdict, double outside, double taken,
-           const std::string& probability = "") const {
-    const char* words[] = {"clear", "collided", "refused"};
-    fmt::print("{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.6f},{}\n", number_, task_.ways.size(), method,
-               target, words[static_cast<int>(verdict.outcome)], verdict.reason, verdict.clearance, outside,
-               verdict.hand_length, verdict.joint_length, verdict.jerk, taken, probability);
-  }
-
   void judge_path(const std::string& method, const Hole& hole, const Samples& path, double taken,
                   const FclScene& scene) {
-    const Verdict verdict =
-        judge(teacher_.arm(), scene, task_.orientation, path, start_joints(), lesson_.branch, seconds);
-    row(method, hole.target, verdict, path.allFinite() ? outside_depth(path, query(hole), judged()) : 0.0, taken);
-  }
-
-  [[nodiscard]] Joints start_joints() const {
-    Samples start(1, 3);
-    start.row(0) = task_.start.transpose();
-    return joints_along(teacher_.arm(), task_.orientation, lesson_.branch, start)->row(0).transpose();
+    const Verdict verdict = judge(scene_.arm(), scene, task_.orientation, path, scene_.joints_at(task_.start),
+                                  scene_.lesson().branch, seconds);
+    scene_.row(method, hole.target, verdict, path.allFinite() ? outside_depth(path, query(hole), judged()) : 0.0,
+               taken);
   }
 
   [[nodiscard]] Query query(const Hole& hole) const { return {task_.start, hole.position, 1, {}}; }
@@ -112,64 +78,6 @@ class Study {
     std::vector<const JudgedTarget*> pointers;
     for (const auto& target : judged_) pointers.push_back(&target);
     return pointers;
-  }
-
-  [[nodiscard]] std::optional<Samples> joints_of(const Samples& path) const {
-    return joints_along(teacher_.arm(), task_.orientation, lesson_.branch, path);
-  }
-
-  [[nodiscard]] double chance_of_touching(const Samples& joints, const HandSpread& spread) const {
-    std::vector<Solid> solids = task_.obstacles;
-    solids.insert(solids.end(), task_.ground.begin(), task_.ground.end());
-    const ArmClearance bodies(teacher_.arm().robot(), solids);
-    return touching(bodies, joints, spread, {}, {.self = true, .draws = 2048}).path.probability;
-  }
-
-  /// What becomes, at its samples, of one of the paths that `told`, the probability of touching, speaks of.
-  void judge_draw(const std::string& method, const Hole& hole, const Samples& path, double told) {
-    Verdict verdict;
-    if (const auto joints = joints_of(path)) {
-      verdict.clearance = least_distance(fcl_, *joints, 1);
-      verdict.outcome = verdict.clearance > 0 ? Outcome::clear : Outcome::collided;
-    } else {
-      verdict.reason = "unreachable";
-    }
-    row(method, hole.target, verdict, 0, 0, fmt::format("{:.5f}", told));
-  }
-
-  /// The probability of touching, and how often what it speaks of does touch: paths drawn from the skill's covariance,
-  /// the same about the skill's way to where a goal that is off was seen.
-  void judge_chances(const BandedSkill& banded) {
-    constexpr Eigen::Index every = 4;
-    constexpr std::uint64_t draws = 5;
-    const auto sparse = [&](const Samples& path) {
-      return Samples(path(Eigen::seq(0, path.rows() - 1, Eigen::fix<every>), Eigen::all));
-    };
-    for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
-      const Hole& hole = task_.new_holes[i];
-      const Samples path = sparse(skill_paths_[i]);
-      const auto joints = joints_of(path);
-      if (!joints) continue;
-      const Random random = random_.split(3).split(i);
-      const Vector times = linspace(0, seconds, path.rows());
-      Goal goal{{}, hole.position, Vector(task_.start), seconds};
-      const auto drawn = [&](const HandSpread& spread, const Random& key) {
-        return Samples((spread.factor * normals(spread.factor.cols(), key)).reshaped<Eigen::RowMajor>(path.rows(), 3));
-      };
-      const HandSpread spread = banded.spread(goal, times);
-      const double told = chance_of_touching(*joints, spread);
-      judge_draw("skill-itself", hole, path, told);
-      for (std::uint64_t k = 0; k < draws; ++k) {
-        judge_draw("skill-drawn", hole, path + drawn(spread, random.split(1).split(k)), told);
-      }
-      goal.covariance = goal_sd * goal_sd * Matrix3::Identity();
-      const double told_of_goal = chance_of_touching(*joints, banded.spread(goal, times));
-      for (std::uint64_t k = 0; k < draws; ++k) {
-        const Vector3 seen = hole.position + goal_sd * normals(3, random.split(2).split(k));
-        const Samples went = sparse(skill_({task_.start, seen, 1, {}}).path);
-        judge_draw("skill-goal-off", hole, went + drawn(spread, random.split(4).split(k)), told_of_goal);
-      }
-    }
   }
 
   void judge_methods() {
@@ -189,7 +97,7 @@ class Study {
       for (const Hole& hole : task_.new_holes) {
         const double asked = processor_time();
         const Samples path = predictor(query(hole)).path;
-        judge_path(method.name, hole, path, learnt + processor_time() - asked, fcl_);
+        judge_path(method.name, hole, path, learnt + processor_time() - asked, scene_.fcl());
         if (method.name == "skill") skill_paths_.push_back(path);
       }
       if (method.name == "skill") skill_ = predictor;
@@ -221,7 +129,7 @@ class Study {
       if (predictors.size() < 2) continue;
       for (const Hole& hole : task_.new_holes) {
         const std::size_t way = banded.way_to(hole.position - task_.start);
-        judge_path(method.name + "+ways", hole, predictors[way](query(hole)).path, 0, fcl_);
+        judge_path(method.name + "+ways", hole, predictors[way](query(hole)).path, 0, scene_.fcl());
       }
     }
   }
@@ -238,16 +146,17 @@ class Study {
     }
     const Vector phases = linspace(0, 1, phase_count);
     for (const Hole& hole : task_.new_holes) {
-      judge_path("largest-detour", hole, straight_line(task_.start, hole.position, phases) + *furthest, 0, fcl_);
+      judge_path("largest-detour", hole, straight_line(task_.start, hole.position, phases) + *furthest, 0,
+                 scene_.fcl());
     }
     for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
-      const auto& meant = lesson_.of_new_holes[i].front();
+      const auto& meant = scene_.lesson().of_new_holes[i].front();
       if (meant) {
-        judge_path("teacher", task_.new_holes[i], meant->positions(phases), 0, fcl_);
+        judge_path("teacher", task_.new_holes[i], meant->positions(phases), 0, scene_.fcl());
       } else {
         Verdict none;
         none.reason = "no_way_round";
-        row("teacher", task_.new_holes[i].target, none, 0, 0);
+        scene_.row("teacher", task_.new_holes[i].target, none, 0, 0);
       }
     }
     // A's skill: the same hand, taught where there is no obstacle.
@@ -263,11 +172,11 @@ class Study {
     Fold fold;
     for (const auto& target : free) fold.push_back(&target);
     const Predictor of_a = chosen_methods({"skill"}).front()->train(fold, {});
-    for (const Hole& hole : task_.new_holes) judge_path("skill-of-A", hole, of_a(query(hole)).path, 0, fcl_);
+    for (const Hole& hole : task_.new_holes) judge_path("skill-of-A", hole, of_a(query(hole)).path, 0, scene_.fcl());
     // The obstacle moved after teaching, to where the hand now goes.
     std::vector<Solid> moved = task_.obstacles;
     for (auto& solid : moved) solid.pose.position += (task_.berth + margin) * task_.ways.front();
-    const FclScene elsewhere(teacher_.arm().robot(), moved, task_.ground);
+    const FclScene elsewhere(scene_.arm().robot(), moved, task_.ground);
     for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
       judge_path("skill-obstacle-moved", task_.new_holes[i], skill_paths_[i], 0, elsewhere);
     }
@@ -275,42 +184,36 @@ class Study {
 
   /// Planners that know the scene, by the very distances of FCL.
   void judge_planners() {
-    const Joints start = start_joints();
-    const auto free = [&](const Joints& q) { return fcl_.distance(q) > 0; };
+    const Joints start = scene_.joints_at(task_.start);
+    const auto free = [&](const Joints& q) { return scene_.fcl().distance(q) > 0; };
     const std::map<std::string, Planner> planners = {{"rrt-connect", Planner::rrt_connect}, {"prm", Planner::prm}};
     for (const auto& [name, planner] : planners) {
       for (std::size_t i = 0; i < task_.new_holes.size(); ++i) {
-        Samples end(1, 3);
-        end.row(0) = task_.new_holes[i].position.transpose();
-        Joints goal = joints_along(teacher_.arm(), task_.orientation, lesson_.branch, end)->row(0).transpose();
+        Joints goal = scene_.joints_at(task_.new_holes[i].position);
         for (int j = 0; j < 6; ++j) goal[j] = start[j] + wrap_angle(goal[j] - start[j]);
         Verdict verdict;
         const auto path = plan_joints(planner, start, goal, free);
         if (!path) {
           verdict.reason = "no_path";
-          row(name, task_.new_holes[i].target, verdict, 0, 0);
+          scene_.row(name, task_.new_holes[i].target, verdict, 0, 0);
           continue;
         }
         Samples hand(path->joints.rows(), 3);
         for (Eigen::Index t = 0; t < hand.rows(); ++t) {
-          hand.row(t) =
-              forward_kinematics(teacher_.arm().robot(), path->joints.row(t).transpose()).position.transpose();
+          hand.row(t) = forward_kinematics(scene_.arm().robot(), path->joints.row(t).transpose()).position.transpose();
         }
         verdict.hand_length = path_length(hand);
         verdict.joint_length = path_length(path->joints);
-        verdict.clearance = least_distance(fcl_, path->joints);
+        verdict.clearance = least_distance(scene_.fcl(), path->joints);
         verdict.outcome = verdict.clearance > 0 ? Outcome::clear : Outcome::collided;
-        row(name, task_.new_holes[i].target, verdict, 0, path->seconds);
+        scene_.row(name, task_.new_holes[i].target, verdict, 0, path->seconds);
       }
     }
   }
 
-  int number_;
   Random random_;
-  Task task_;
-  Teacher teacher_;
-  FclScene fcl_;
-  Lesson lesson_;
+  StudiedScene scene_;
+  const Task& task_;  // the scene's
   std::vector<TargetDemonstrations> targets_;
   std::vector<JudgedTarget> judged_;
   std::vector<TrainingTarget> training_;

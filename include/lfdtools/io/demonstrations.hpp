@@ -23,6 +23,9 @@ struct DemonstrationOptions {
 /// @throws DataError [demo.no_signal]
 [[nodiscard]] std::vector<std::string> signal_columns(const CsvTable& table);
 
+/// q1 to q6, the columns of an arm's joints.
+[[nodiscard]] const std::vector<std::string>& joint_columns();
+
 /// One group of a table.
 struct Recording {
   Demonstration demonstration;     ///< labels, times and signals

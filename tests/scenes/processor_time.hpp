@@ -1,0 +1,15 @@
+// What learning and planning cost.
+#pragma once
+
+#include <ctime>
+
+namespace lfd::scenes {
+
+/// Processor time of this process so far [s].
+inline double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace lfd::scenes
