@@ -66,7 +66,7 @@ ArmClearance::ArmClearance(Robot robot, std::vector<Solid> solids_in_base, const
 std::string ArmClearance::obstacle_name(int obstacle) const {
   const auto i = static_cast<std::size_t>(obstacle);
   if (i >= solids_.size()) return bodies()[i - solids_.size()].name;
-  return solids_[i].name.empty() ? std::to_string(i + 1) : solids_[i].name;
+  return solids_[i].called(i);
 }
 
 std::vector<LinkClearance> ArmClearance::pairs(const Joints& q) const {

@@ -22,15 +22,14 @@ bool PathSampling::halve(const InverseKinematics& arm, const std::vector<Eigen::
   std::vector<Row> rows;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
-    if (wanted[i] != 0 && row.halvings < depth && !row.middle_out_of_reach) {
+    if (wanted[i] != 0 && row.halvings < depth && !row.middle_out_of_reach && !row.no_time_between) {
       Row middle = row;
       middle.time = 0.5 * (rows_[i - 1].time + row.time);
       middle.inserted = true;
       const Pose pose = interpolate(poses_[i - 1], poses_[i], 0.5);
-      // Times that leave no number between them count as halved enough.
-      const bool room = middle.time > rows_[i - 1].time && middle.time < row.time;
-      row.middle_out_of_reach = !room || arm(pose, ik).empty();
-      if (!row.middle_out_of_reach) {
+      row.no_time_between = !(middle.time > rows_[i - 1].time && middle.time < row.time);
+      row.middle_out_of_reach = !row.no_time_between && arm(pose, ik).empty();
+      if (!row.no_time_between && !row.middle_out_of_reach) {
         middle.halvings = ++row.halvings;
         poses.push_back(pose);
         rows.push_back(middle);
@@ -64,12 +63,14 @@ Eigen::Index PathSampling::given(Eigen::Index row) const {
 std::string PathSampling::name(Eigen::Index row) const {
   const Row& at = rows_[static_cast<std::size_t>(row)];
   if (!at.inserted) return fmt::format("sample {}", at.given + 1);
-  return fmt::format("{:.6g} s, between samples {} and {}", at.time, at.given, at.given + 1);
+  return fmt::format("{:.6g} s after the first, between samples {} and {}", at.time - rows_.front().time, at.given,
+                     at.given + 1);
 }
 
 std::string PathSampling::limit(Eigen::Index row, int depth) const {
   const Row& at = rows_[static_cast<std::size_t>(row)];
   if (at.middle_out_of_reach) return "the way between is out of reach";
+  if (at.no_time_between) return "there is no number between their times";
   if (depth > 0 && at.halvings >= depth) return fmt::format("halving the interval {} times does not help", depth);
   return {};
 }

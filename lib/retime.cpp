@@ -23,11 +23,13 @@ constexpr double least_period = 1e-6;   // between rows that the path does not t
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const Samples& joints, const RetimeOptions& options) {
-  const bool positive = options.velocity.minCoeff() > 0.0 && options.acceleration.minCoeff() > 0.0 &&
-                        (!options.tip_speed || *options.tip_speed > 0.0) && options.velocity.allFinite() &&
-                        options.acceleration.allFinite();
-  if (!positive || options.grid < 1) {
-    throw UsageError("retime.options", "limits of speed and acceleration, and the grid, must be positive");
+  const auto usable = [](double limit) { return limit >= RetimeOptions::least && limit <= RetimeOptions::most; };
+  if (!std::all_of(options.velocity.begin(), options.velocity.end(), usable) ||
+      !std::all_of(options.acceleration.begin(), options.acceleration.end(), usable) ||
+      (options.tip_speed && !usable(*options.tip_speed)) || options.grid < 1) {
+    throw UsageError("retime.options", fmt::format("limits of speed and acceleration are from {:g} to {:g}, the grid "
+                                                   "is positive",
+                                                   RetimeOptions::least, RetimeOptions::most));
   }
   if (joints.rows() < 2 || joints.cols() != 6) {
     throw DataError("retime.shape", fmt::format("joints of {} x {}: two rows are needed at least, and six columns",
@@ -158,9 +160,12 @@ class Retiming::Solver {
   /// Largest share of a limit of speed.
   [[nodiscard]] double speed_share(const State& state) const {
     const double joint = state.velocity.cwiseAbs().cwiseQuotient(options_.velocity).maxCoeff();
-    if (!options_.tip_speed) return joint;
-    const Jacobian J = jacobian(robot_, state.position, options_.tool.position);
-    return std::max(joint, (J.topRows<3>() * state.velocity).norm() / *options_.tip_speed);
+    return options_.tip_speed ? std::max(joint, tip_share(state.position, state.velocity)) : joint;
+  }
+
+  [[nodiscard]] double tip_share(const Joints& position, const Joints& velocity) const {
+    const Jacobian J = jacobian(robot_, position, options_.tool.position);
+    return (J.topRows<3>() * velocity).norm() / *options_.tip_speed;
   }
 
   /// Backwards the largest x from which the rest can still be gone, forwards as fast as they allow.
@@ -220,17 +225,23 @@ class Retiming::Solver {
     return at_rest.cwiseMax(excess_of(CubicSpline(times, values, SplineEnds::not_a_knot), times));
   }
 
-  /// The second derivative of a spline is largest at a knot; its first is looked at in tenths of the interval that ends
-  /// there.
+  /// The second derivative of a spline is largest at a knot, its first a parabola between two; the tip is looked at in
+  /// quarters of the interval that ends there.
   [[nodiscard]] Vector excess_of(const CubicSpline& spline, const Vector& times) const {
     Vector excess(times.size());
     for (Eigen::Index k = 0; k < times.size(); ++k) {
       const Joints bend = spline.second_derivatives().row(k).transpose();
       excess[k] = std::sqrt(bend.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff());
       if (k == 0) continue;
-      const Samples speeds = spline.derivative(Vector::LinSpaced(11, times[k - 1], times[k]));
-      for (const auto& speed : speeds.rowwise()) {
-        excess[k] = std::max(excess[k], speed.transpose().cwiseAbs().cwiseQuotient(options_.velocity).maxCoeff());
+      const Vector quarters = Vector::LinSpaced(5, times[k - 1], times[k]);
+      const Samples speeds = spline.derivative(quarters);
+      const Joints speed =
+          largest_between(speeds.row(0).transpose(), speeds.row(2).transpose(), speeds.row(4).transpose());
+      excess[k] = std::max(excess[k], speed.cwiseQuotient(options_.velocity).maxCoeff());
+      if (!options_.tip_speed) continue;
+      const Samples joints = spline(quarters);
+      for (Eigen::Index i = 0; i < 5; ++i) {
+        excess[k] = std::max(excess[k], tip_share(joints.row(i).transpose(), speeds.row(i).transpose()));
       }
     }
     return excess;

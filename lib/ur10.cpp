@@ -10,6 +10,7 @@
 
 #include "lfdtools/error.hpp"
 #include "ur10_closed_form.hpp"
+#include "wrist_loop.hpp"
 
 namespace lfd {
 namespace {
@@ -43,8 +44,14 @@ Joints joints_of(const UrGeometry& g, const Candidate& candidate) {
 
 /// |sin q5| of the nearest exact arm up to which a calibrated one may have its solutions at any q6: its axes 4 and 6
 /// differ from those of the exact arm by some milliradians, and where they are parallel that alone decides on q6.
-constexpr double near_wrist = 0.03;
-constexpr int steps_of_q6 = 32;  ///< over the whole turn
+constexpr double near_wrist = 0.06;
+/// The same where the shoulder is nearly singular too, so that q1 of the exact arm, and with it its wrist, is well off:
+/// where the wrist centre is within this of the cylinder about the base's axis that it cannot enter [m].
+constexpr double near_wrist_and_shoulder = 0.3, near_shoulder = 0.1;
+/// How far from a double root of the exact arm Newton steps start, as a sine: in the root itself the Jacobian is
+/// singular, and the calibrated arm has two solutions on either side of it, or none.
+constexpr std::array<double, 3> starts_apart = {0.2, 0.05, 0.0};
+constexpr int starts_of_loops = 8;  ///< values of q6, over the whole turn
 
 /// The solutions of a calibrated arm, by Newton steps from those of the nearest exact arm and, where the wrist of that
 /// is nearly singular, from wherever q6 solves the calibrated one.
@@ -55,129 +62,44 @@ class CalibratedSolutions {
 
   /// @param q6  wanted where it is free [rad], angle of the exact arm
   IkSolutions solve(double q6) {
-    const Edges limits = edges(q6, tolerance_ / 10.0);
-    const ClosedForm closed(g_, flange_, limits);
-    for (std::size_t i = 0; i < closed.count; ++i) add(joints_of(g_, closed.candidates[i]));
-    // Asked with q6 free, for the exact arm's own q6 need not let the elbow close.
-    const Edges wide = edges(q6, near_wrist);
-    const ClosedForm around(g_, flange_, wide);
-    for (const int shoulder : {0, 4}) {
-      const auto near = [&](const Candidate& candidate) {
-        return (candidate.branch & 4) == shoulder && candidate.wrist_free;
-      };
-      if (std::none_of(around.candidates.begin(), around.candidates.begin() + around.count, near)) continue;
-      for (const int elbow : {0, 1}) search_q6(shoulder + elbow);
+    for (const double apart : starts_apart) {
+      for_each_candidate(q6, tolerance_ / 10.0, apart,
+                         [&](const Candidate& candidate) { add(joints_of(g_, candidate)); });
     }
+    WristLoops loops(arm_.robot(), flange_);
+    const bool shoulder = wrist_from_axis() < std::abs(g_.d4) + near_shoulder;
+    for (int k = 0; k < starts_of_loops; ++k) {  // not each need let the elbow close
+      const double other = q6 + 2.0 * std::numbers::pi * k / starts_of_loops;
+      const auto trace = [&](const Candidate& candidate) {
+        if (candidate.wrist_free) loops.trace(joints_of(g_, candidate));
+      };
+      for_each_candidate(other, shoulder ? near_wrist_and_shoulder : near_wrist, 0.0, trace);
+      if (shoulder) for_each_candidate(other, near_wrist_and_shoulder, starts_apart.front(), trace);
+    }
+    for (const Joints& zero : loops.zeros()) add(zero);
     std::stable_sort(found_.solutions.begin(), found_.solutions.begin() + found_.count,
                      [](const IkSolution& a, const IkSolution& b) { return a.branch < b.branch; });
     return found_;
   }
 
  private:
-  /// Joints with a given q6 that reach the pose but for a tilt that joint 5 would take if q6 were another.
-  struct Tilted {
-    Joints joints = Joints::Zero();
-    double q6 = 0.0;    ///< [rad], angle of the exact arm
-    double tilt = 0.0;  ///< [rad], signed: zero is a solution
-  };
-
-  [[nodiscard]] static Edges edges(double q6, double wrist_free) { return {q6, wrist_free, 0.05, 0.05}; }
-
-  /// The pose is corrected by what the exact arm differs from the calibrated one at the joints found, and solved again.
-  [[nodiscard]] std::optional<Tilted> at_q6(int arm_branch, double q6) const {
-    Tilted tilted;
-    tilted.q6 = q6;
-    Pose corrected = flange_;
-    for (int pass = 0; pass < 3; ++pass) {
-      const Edges limits = edges(q6, 2.0 * near_wrist);
-      const ClosedForm closed(g_, corrected, limits);
-      const auto* end = closed.candidates.data() + closed.count;
-      const auto* own = std::find_if(closed.candidates.data(), end, [&](const Candidate& candidate) {
-        return candidate.wrist_free && (candidate.branch & 5) == arm_branch;
-      });
-      // Where the elbow does not close with this q6, the closed form takes another.
-      if (own == end || std::abs(wrap_angle(angle_of(own->q[5]) - q6)) > 1e-6) return std::nullopt;
-      tilted.joints = joints_of(g_, *own);
-      const Pose reached = forward_kinematics(arm_.robot(), tilted.joints);
-      corrected = flange_ * inverse(reached) * exact_pose(g_, own->q);
-      const Vector3 off = vector_from_rotation(reached.rotation.transpose() * flange_.rotation);
-      tilted.tilt = own->q[5].c * off.x() - own->q[5].s * off.y();
-    }
-    return tilted;
+  /// visit(candidate) for each of the exact arm's solutions, of poses up to 5 cm out of its reach as well.
+  template <class Visit>
+  void for_each_candidate(double q6, double wrist_free, double apart, Visit visit) const {
+    const Edges limits{q6, wrist_free, 0.05, apart};
+    const ClosedForm closed(g_, flange_, limits);
+    for (std::size_t i = 0; i < closed.count; ++i) visit(closed.candidates[i]);
   }
 
-  void search_q6(int arm_branch) {
-    constexpr double step = 2.0 * std::numbers::pi / steps_of_q6;
-    std::vector<std::optional<Tilted>> around;  // nothing where the elbow does not close
-    for (int k = 0; k < steps_of_q6; ++k) {
-      auto here = at_q6(arm_branch, k * step);
-      if (k > 0 && here.has_value() != around.back().has_value()) {
-        const Tilted edge =
-            here ? edge_of_reach(arm_branch, *here, -step) : edge_of_reach(arm_branch, *around.back(), step);
-        around.emplace_back(edge);
-      }
-      around.push_back(std::move(here));
-    }
-    for (std::size_t k = 0; k < around.size(); ++k) {
-      const auto& here = around[k];
-      const auto &next = around[(k + 1) % around.size()], &last = around[(k + around.size() - 1) % around.size()];
-      if (!here || !next) continue;
-      if (differ(*here, *next)) {
-        add(between(arm_branch, *here, *next));
-      } else if (last && !differ(*last, *here)) {
-        search_dip(arm_branch, *last, *here, *next);
-      }
-    }
-  }
-
-  /// The last q6 for which the elbow closes, on the way from one for which it does to one for which it does not.
-  [[nodiscard]] Tilted edge_of_reach(int arm_branch, const Tilted& from, double step) const {
-    Tilted edge = from;
-    for (int halving = 0; halving < 10; ++halving) {
-      step *= 0.5;
-      if (const auto further = at_q6(arm_branch, edge.q6 + step)) edge = *further;
-    }
-    return edge;
-  }
-
-  /// Two solutions may hide where the tilt comes near zero and goes back.
-  void search_dip(int arm_branch, Tilted low, Tilted middle, Tilted high) {
-    for (int i = 0; i < 4; ++i) {
-      const double left = std::abs(low.tilt) - std::abs(middle.tilt);
-      const double right = std::abs(high.tilt) - std::abs(middle.tilt);
-      if (left < 0.0 || right < 0.0 || left + right == 0.0) return;
-      // The parabola's lowest point, or the middle of the wider half if that is where we are.
-      const double before = wrap_angle(middle.q6 - low.q6), after = wrap_angle(high.q6 - middle.q6);
-      const double slopes = left / before + right / after;
-      double move = 0.5 * (left / before * after - right / after * before) / slopes;
-      if (std::abs(move) < 0.05 * std::min(before, after)) move = after > before ? 0.5 * after : -0.5 * before;
-      const auto lowest = at_q6(arm_branch, middle.q6 + move);
-      if (!lowest) return;
-      if (differ(*lowest, middle)) {
-        add(between(arm_branch, move < 0.0 ? low : middle, *lowest));
-        add(between(arm_branch, *lowest, move < 0.0 ? middle : high));
-        return;
-      }
-      const bool lower = std::abs(lowest->tilt) < std::abs(middle.tilt);
-      (lower == (move < 0.0) ? high : low) = lower ? middle : *lowest;
-      if (lower) middle = *lowest;
-    }
-  }
-
-  static bool differ(const Tilted& a, const Tilted& b) { return (a.tilt < 0.0) != (b.tilt < 0.0); }
-
-  /// False position between two tilts of different sign, as near as Newton steps need it.
-  [[nodiscard]] Joints between(int arm_branch, Tilted low, Tilted high) const {
-    for (int i = 0; i < 6; ++i) {
-      const double share = std::clamp(low.tilt / (low.tilt - high.tilt), 0.1, 0.9);
-      const auto middle = at_q6(arm_branch, low.q6 + share * wrap_angle(high.q6 - low.q6));
-      if (!middle) break;
-      (differ(*middle, low) ? high : low) = *middle;
-    }
-    return std::abs(low.tilt) < std::abs(high.tilt) ? low.joints : high.joints;
+  [[nodiscard]] double wrist_from_axis() const {
+    const Vector3 wrist = flange_.position - g_.d6 * flange_.rotation.col(2);
+    return std::hypot(wrist.x(), wrist.y());
   }
 
   void add(const Joints& start) {
+    // Far from double roots all of starts_apart give the same.
+    if (std::find(starts_.begin(), starts_.end(), start) != starts_.end()) return;
+    starts_.push_back(start);
     auto refined = refine(arm_.robot(), flange_, start, tolerance_);
     if (!refined || found_.count == found_.solutions.size()) return;
     refined->branch = arm_.branch(refined->joints);
@@ -196,6 +118,7 @@ class CalibratedSolutions {
   const UrGeometry& g_;
   const Pose& flange_;
   double tolerance_;
+  std::vector<Joints> starts_;
   IkSolutions found_;
 };
 

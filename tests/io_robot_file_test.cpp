@@ -3,6 +3,7 @@
 
 #include "io_model_fixture.hpp"
 #include "lfdtools/io/robot_file.hpp"
+#include "lfdtools/ur_geometry.hpp"
 
 using namespace lfd;
 
@@ -43,6 +44,7 @@ TEST_CASE("a robot is read as it was written, and its faults are status 78") {
   refused("\"alpha\":0,", "", "json.missing_key", "/dh/0");
   refused("[[-6.25,6.25]", "[[6.25,6.25]", "robot.limits", "/limits/position/0");
   refused("\"velocity\":[2.5", "\"velocity\":[0", "json.out_of_range", "/limits/velocity/0");
+  refused("\"velocity\":[2.5", "\"velocity\":[1e7", "json.out_of_range", "/limits/velocity/0");
   refused("\"frame\":3", "\"frame\":7", "json.out_of_range", "/links/0/frame");
   refused("\"frame\":3", "\"frame\":2.5", "json.not_an_integer", "/links/0/frame");
   refused("\"radius\":0.06", "\"radius\":0", "json.out_of_range", "/links/0/radius");
@@ -52,6 +54,19 @@ TEST_CASE("a robot is read as it was written, and its faults are status 78") {
   const std::string bad =
       text.substr(0, quaternion) + "\"orientation\":[2,0,0,0" + text.substr(text.find(']', quaternion));
   require_refused(bad, read_robot, "rotation.not_unit", "/frames/base_link/orientation", Fault::config);
+}
+
+TEST_CASE("right angles in ten digits are right angles, other angles what they are") {
+  Robot robot = nominal_ur10();
+  const std::string text = text_of(robot, write_robot);
+  const std::string published = changed(text, "1.5707963267948966", "1.570796327");
+  REQUIRE(published != text);
+  const Robot read = read_robot(document(published, Fault::config));
+  CHECK(read.dh[0].alpha == robot.dh[0].alpha);
+  CHECK(ur_geometry(read).exact);
+  const Robot calibrated = read_robot(document(changed(text, "1.5707963267948966", "1.5707963"), Fault::config));
+  CHECK(calibrated.dh[0].alpha == 1.5707963);
+  CHECK_FALSE(ur_geometry(calibrated).exact);
 }
 
 TEST_CASE("a robot file is loaded by path") {

@@ -226,6 +226,37 @@ TEST_CASE("the tool tip keeps its speed limit too") {
   CHECK(law(0.5 * law.duration()).velocity[0] * radius == Approx(0.5));
 }
 
+TEST_CASE("the tool tip keeps its speed limit on the splines through the rows, where they overshoot at corners") {
+  const Robot robot = nominal_ur10();
+  double worst = 0.0, longest = 0.0;
+  for (const Eigen::Index T : {Eigen::Index{55}, Eigen::Index{120}}) {
+    Samples joints = Samples::Zero(T, 6);  // three sides of a square in joints 1 and 2, gone along at one speed
+    for (Eigen::Index t = 0; t < T; ++t) {
+      const double s = 3.0 * static_cast<double>(t) / static_cast<double>(T - 1);
+      joints.row(t) << 0.4 * std::clamp(s - 1.0, 0.0, 1.0), -1.2 + 0.4 * (std::min(s, 1.0) - std::max(s - 2.0, 0.0)),
+          0.9, 0.0, 1.0, 0.0;
+    }
+    RetimeOptions options = limits(2.0, 1.4);
+    options.tip_speed = 0.05;
+    const Retiming law = retime(robot, joints, options);
+    options.of_rows = false;
+    longest = std::max(longest, law.duration() / retime(robot, joints, options).duration());
+    for (const SplineEnds ends : both_ends) {
+      const Vector times = Vector::LinSpaced(50 * T, 0.0, law.duration());
+      const Samples path = CubicSpline(law.times(), joints, ends)(times);
+      Vector3 before = forward_kinematics(robot, path.row(0).transpose()).position;
+      for (Eigen::Index k = 1; k < times.size(); ++k) {
+        const Vector3 here = forward_kinematics(robot, path.row(k).transpose()).position;
+        worst = std::max(worst, (here - before).norm() / (times[k] - times[k - 1]) / *options.tip_speed);
+        before = here;
+      }
+    }
+  }
+  INFO("largest share of the limit " << worst << ", which took up to " << longest << " times as long");
+  CHECK(worst < 1.01);
+  CHECK(longest < 1.08);  // 6.6 % with 55 rows: two stops at sharp corners
+}
+
 TEST_CASE("corners, rests, repeated rows and two rows have times that rise") {
   const Robot robot = nominal_ur10();
   RetimeOptions options = limits(1.0, 2.0);
@@ -264,6 +295,8 @@ TEST_CASE("paths and limits that cannot be are refused") {
   CHECK_THROWS_AS(retime(robot, Samples::Constant(5, 6, std::nan("")), limits(1.0, 1.0)), DataError);
   CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(0.0, 1.0)), UsageError);
   CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(1.0, -1.0)), UsageError);
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(1.0, 1e-7)), UsageError);
+  CHECK_THROWS_AS(retime(robot, Samples::Zero(5, 6), limits(1e7, 1.0)), UsageError);
 }
 
 TEST_CASE("a joint that turns round takes hardly longer than its ways from rest to rest") {

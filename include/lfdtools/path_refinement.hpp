@@ -25,7 +25,7 @@ class PathSampling {
   [[nodiscard]] std::vector<Eigen::Index> given() const;
   /// The given sample that a row is or leads to.
   [[nodiscard]] Eigen::Index given(Eigen::Index row) const;
-  /// Where a row is, for people: "sample 5", or "1.25 s, between samples 4 and 5".
+  /// Where a row is, for people: "sample 5", or "1.25 s after the first, between samples 4 and 5".
   [[nodiscard]] std::string name(Eigen::Index row) const;
   /// Why the interval that ends at a row is not halved any more; empty if it could be.
   [[nodiscard]] std::string limit(Eigen::Index row, int depth) const;
@@ -37,6 +37,7 @@ class PathSampling {
     bool inserted = false;
     int halvings = 0;                  // of the interval that ends here
     bool middle_out_of_reach = false;  // of that interval
+    bool no_time_between = false;      // at that interval's ends
   };
   std::vector<Pose> poses_;
   std::vector<Row> rows_;

@@ -24,6 +24,9 @@ struct Solid {
   Vector3 size = Vector3::Zero();  ///< full edges of a box [m]
   double radius = 0;               ///< of sphere, cylinder and capsule [m]
   double length = 0;               ///< of cylinder and capsule, without the half spheres [m]
+
+  /// Its name or, without one, its number from 1. @param index  in its scene, from 0
+  [[nodiscard]] std::string called(std::size_t index) const { return name.empty() ? std::to_string(index + 1) : name; }
 };
 
 /// Obstacles, and the frame in which they are told.

@@ -46,8 +46,9 @@ struct IkSolutions {
 [[nodiscard]] std::string branch_name(int branch);
 
 /// Solver for one arm. Closed form for the exact pattern; for calibrated DH rows the closed form of the nearest exact
-/// arm, refined by Newton steps. Where the wrist of that is nearly singular, calibration alone decides on q6, and all
-/// q6 are searched.
+/// arm, refined by Newton steps. Where the wrist of that is nearly singular, calibration alone decides on q6, and the
+/// solutions are looked for all along the arm's self-motion. Of arms whose axes are off by milliradians, one solution
+/// in 10^4 or fewer is missed, some in 10^4 beside two singularities at once.
 class InverseKinematics {
  public:
   /// @throws ConfigError as check(Robot) and ur_geometry

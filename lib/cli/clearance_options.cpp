@@ -23,7 +23,7 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
                  "largest probability that the path touches anything");
   program.gate("clearance", "a link closer than --margin to an obstacle, at a sample or between two")
       .gate("self_clearance", "with --self: a link inside another of the arm's")
-      .gate("probability", "the path touches with more than --max-probability, where that is given")
+      .gate("probability", "the path touches, or leaves the reach, with more than --max-probability, where that is given")
       .gate("mean_differs", "with --max-probability: the covariance is that of another hand path")
       .gate("joint_range", "a joint outside the robot's range")
       .gate("joint_step", "a joint moves by over 0.5 rad between two rows");
@@ -41,8 +41,8 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
       throw UsageError("usage.missing", "--frame, that of covariance and goal, needs --covariance or --goal-sd");
     }
     if (request.goal_sd &&
-        std::any_of(request.goal_sd->begin(), request.goal_sd->end(), [](double sd) { return sd < 0; })) {
-      throw UsageError("usage.value", "--goal-sd: a standard deviation is not negative");
+        std::any_of(request.goal_sd->begin(), request.goal_sd->end(), [](double sd) { return sd < 0 || sd > 10; })) {
+      throw UsageError("usage.value", "--goal-sd: a standard deviation is from 0 to 10 m");
     }
     (void)tool_pose(request.pose);
   });

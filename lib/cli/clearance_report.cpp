@@ -138,7 +138,7 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
                                                     file));
     }
     for (std::size_t i = 0; request.self && i < scene.obstacles.size(); ++i) {
-      const std::string& name = scene.obstacles[i].name;
+      const std::string name = scene.obstacles[i].called(i);
       const auto called = [&](const Capsule& link) { return link.name == name; };
       if (std::none_of(robot.links.begin(), robot.links.end(), called)) continue;
       throw ConfigError("scene.name_of_link", fmt::format("an obstacle is called '{}', as a link of the arm is", name),
@@ -183,8 +183,12 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
           fmt::format("{}the path touches with probability {:.3g}{}", prefix_of(recording.demonstration.labels),
                       chances.path.probability,
                       chances.path.error > 0 ? fmt::format(" (standard error {:.1g})", chances.path.error) : "");
-      if (request.max_probability && chances.path.probability > *request.max_probability) {
-        run.refuse("probability", fmt::format("{}, over {:g}", text, *request.max_probability), recording.place(0));
+      // Of a path that the arm cannot follow nobody knows what it would touch.
+      const double lost = chances.out_of_reach.probability;
+      if (request.max_probability && chances.path.probability + lost > *request.max_probability) {
+        const std::string also = lost > 0.0 ? fmt::format(" and leaves the arm's reach with {:.3g}", lost) : "";
+        run.refuse("probability", fmt::format("{}{}, over {:g}", text, also, *request.max_probability),
+                   recording.place(0));
       }
       run.detail("clearance.probability", text);
       run.figure("path_probability", chances.path.probability);

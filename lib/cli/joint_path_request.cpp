@@ -60,6 +60,7 @@ class Answer {
     LabelledTable out(run_.output(), joint_path_columns(request_, passed_));
     for (std::size_t i = 0; i < source.recordings(); ++i) {
       const Recording recording = source.recording(i);
+      (void)out.begin(recording.demonstration.labels);  // a table without rows has its header, too
       const auto poses = flange_poses(recording, quaternions_, arm_.robot(), request_.pose);
       request_.all ? write_solutions(recording, poses, out) : write_path(recording, poses, out);
     }
@@ -115,15 +116,9 @@ class Answer {
     JointPath path = solve_path(arm_, poses, given, options_);
     if (request_.retime && path.joints.rows() > 1) path = moving(recording, path);
     const Vector times = path.times;
-    double start = 0.0;
-    JointRates rates;
-    if (request_.retime && path.joints.rows() > 1) {
-      // Judged from 0: beside a large time, such as one counted from 1970, the law's would be rounded.
-      start = times[0];
-      rates = retimed(recording, path);
-    } else {
-      rates = rates_along(path);
-    }
+    if (request_.retime && path.joints.rows() == 1) path.times[0] = 0.0;
+    const bool law = request_.retime && path.joints.rows() > 1;
+    const JointRates rates = law ? retimed(recording, path) : rates_along(path);
     if (options_.seed) judge_start(path, recording, *options_.seed, request_.start_tolerance, run_);
     if (!judge(path, rates, recording, arm_.robot(), tool_, request_.limits, run_,
                better_posture(arm_, path, poses, given, options_, request_.limits))) {
@@ -131,7 +126,7 @@ class Answer {
     }
     warn_of_postures(path, recording);
     report_rows(recording, path);
-    Samples rows = path_rows(arm_, path, start, rates, request_);
+    Samples rows = path_rows(arm_, path, rates, request_);
     if (!passed_.empty()) {
       rows = beside(rows, between(given, recording.extras.rightCols(static_cast<Eigen::Index>(passed_.size())), times));
     }

@@ -56,9 +56,9 @@ Samples solution_row(const InverseKinematics& arm, const IkSolution& solution, s
   return row;
 }
 
-Samples path_rows(const InverseKinematics& arm, const JointPath& path, double start, const JointRates& rates,
+Samples path_rows(const InverseKinematics& arm, const JointPath& path, const JointRates& rates,
                   const JointPathRequest& request) {
-  Samples rows = beside(path.times.array() + start, path.joints);
+  Samples rows = beside(path.times, path.joints);
   if (request.speeds) rows = beside(rows, rates.speeds);
   if (request.accelerations) rows = beside(rows, rates.accelerations);
   if (request.diagnostics) rows = beside(rows, diagnostics(path));

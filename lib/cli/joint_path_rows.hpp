@@ -16,9 +16,9 @@ namespace lfd::cli {
 [[nodiscard]] Samples solution_row(const InverseKinematics& arm, const IkSolution& solution, std::size_t number,
                                    double time, const JointPathRequest& request);
 
-/// The rows of a path, T x columns without those passed on. @param start  added to the path's times [s]
-[[nodiscard]] Samples path_rows(const InverseKinematics& arm, const JointPath& path, double start,
-                                const JointRates& rates, const JointPathRequest& request);
+/// The rows of a path, T x columns without those passed on.
+[[nodiscard]] Samples path_rows(const InverseKinematics& arm, const JointPath& path, const JointRates& rates,
+                                const JointPathRequest& request);
 
 /// Rates of a path by the spline through its joints, so that speeds do not lag half a sample.
 [[nodiscard]] JointRates rates_along(const JointPath& path);

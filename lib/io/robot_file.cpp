@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "json_check.hpp"
 #include "lfdtools/io/input.hpp"
@@ -15,7 +17,8 @@ namespace {
 constexpr const char* format = "lfdtools.robot";
 constexpr std::size_t joints = 6;
 constexpr std::size_t most_links = 1000;
-constexpr std::uint64_t most_bytes = 10'000'000;  // of a file in another format
+constexpr double least_rate = 1e-6, most_rate = 1e6;  // of a joint's limits [rad/s, rad/s^2]
+constexpr std::uint64_t most_bytes = 10'000'000;      // of a file in another format
 
 Pose read_pose(const JsonView& view) {
   view.only({"position", "orientation"});
@@ -27,12 +30,21 @@ Pose read_pose(const JsonView& view) {
   return pose;
 }
 
+/// A right angle written with ten digits, as makers publish it, is one: an arm that is off by less than a nanometre a
+/// metre would count as calibrated, and take far longer to solve.
+double right_angle_of(double alpha) {
+  constexpr double quarter = std::numbers::pi / 2.0;
+  const double right = quarter * std::nearbyint(alpha / quarter);
+  return std::abs(alpha - right) < 1e-9 ? right : alpha;
+}
+
 void read_dh(const JsonView& list, Robot& robot) {
   if (list.size() != joints) list.fail("json.wrong_length", "there must be six rows, one a joint");
   for (std::size_t i = 0; i < joints; ++i) {
     const JsonView row = list.at(i);
     row.only({"a", "alpha", "d", "theta"});
-    robot.dh[i] = {row.at("a").number(), row.at("alpha").number(), row.at("d").number(), row.at("theta").number()};
+    robot.dh[i] = {row.at("a").number(), right_angle_of(row.at("alpha").number()), row.at("d").number(),
+                   row.at("theta").number()};
   }
 }
 
@@ -48,7 +60,10 @@ void read_limits(const JsonView& view, JointLimits& limits) {
   }
   const auto read_rates = [](const JsonView& list) {
     const Joints rates = list.vector(joints);
-    for (std::size_t i = 0; i < joints; ++i) (void)list.at(i).positive();
+    for (std::size_t i = 0; i < joints; ++i) {
+      const double rate = list.at(i).positive();
+      if (rate < least_rate || rate > most_rate) list.at(i).fail("json.out_of_range", "a limit is from 1e-6 to 1e6");
+    }
     return rates;
   };
   limits.velocity = read_rates(view.at("velocity"));

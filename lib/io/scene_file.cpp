@@ -9,6 +9,11 @@ namespace {
 
 constexpr const char* format = "lfdtools.scene";
 constexpr std::size_t most_obstacles = 10'000;
+constexpr double furthest = 1e6;  // of a place, and the largest length [m]; distances keep their digits
+
+void require_near(const JsonView& view, double largest) {
+  if (largest > furthest) view.fail("json.out_of_range", "a place or a length is over 1e6 m");
+}
 
 SolidShape shape_of(const JsonView& view) {
   const std::string type = view.string();
@@ -27,6 +32,7 @@ Solid read_solid(const JsonView& view) {
   const JsonView pose = view.at("pose");
   pose.only({"position", "orientation"});
   solid.pose.position = pose.at("position").vector(3);
+  require_near(pose.at("position"), solid.pose.position.cwiseAbs().maxCoeff());
   if (const auto orientation = pose.find("orientation")) {
     const Vector q = orientation->vector(4);
     checked(*orientation, [&] { solid.pose.rotation = rotation_from_quaternion(q); });
@@ -36,18 +42,21 @@ Solid read_solid(const JsonView& view) {
       view.only({"name", "type", "pose", "size"});
       const JsonView size = view.at("size");
       solid.size = size.vector(3);
-      for (std::size_t i = 0; i < 3; ++i) (void)size.at(i).positive();
+      for (std::size_t i = 0; i < 3; ++i) require_near(size.at(i), size.at(i).positive());
       break;
     }
     case SolidShape::sphere:
       view.only({"name", "type", "pose", "radius"});
       solid.radius = view.at("radius").positive();
+      require_near(view.at("radius"), solid.radius);
       break;
     case SolidShape::cylinder:
     case SolidShape::capsule:
       view.only({"name", "type", "pose", "radius", "length"});
       solid.radius = view.at("radius").positive();
       solid.length = view.at("length").positive();
+      require_near(view.at("radius"), solid.radius);
+      require_near(view.at("length"), solid.length);
       break;
     case SolidShape::plane:
       view.only({"name", "type", "pose"});
@@ -74,9 +83,10 @@ Scene read_scene(const JsonDocument& document) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < list.size(); ++i) {
     scene.obstacles.push_back(read_solid(list.at(i)));
-    const std::string& name = scene.obstacles.back().name;
-    if (name.empty() || names.insert(name).second) continue;
-    list.at(i).at("name").fail("scene.name_twice", "another obstacle is called '" + name + "' too");
+    const std::string name = scene.obstacles.back().called(i);
+    if (names.insert(name).second) continue;
+    list.at(i).fail("scene.name_twice",
+                    "another obstacle is called '" + name + "' too, by its name or, without one, its number");
   }
   return scene;
 }
