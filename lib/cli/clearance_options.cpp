@@ -23,7 +23,8 @@ void declare_clearance(Program& program, ClearanceRequest& request) {
                  "largest probability that the path touches anything");
   program.gate("clearance", "a link closer than --margin to an obstacle, at a sample or between two")
       .gate("self_clearance", "with --self: a link inside another of the arm's")
-      .gate("probability", "the path touches, or leaves the reach, with more than --max-probability, where that is given")
+      .gate("probability",
+            "the path touches, or leaves the reach, with more than --max-probability, where that is given")
       .gate("mean_differs", "with --max-probability: the covariance is that of another hand path")
       .gate("joint_range", "a joint outside the robot's range")
       .gate("joint_step", "a joint moves by over 0.5 rad between two rows");
