@@ -8,14 +8,15 @@
 #include <limits>
 
 #include "lfdtools/error.hpp"
-#include "lfdtools/interpolation.hpp"
 #include "lfdtools/joint_curve.hpp"
+#include "retime_excess.hpp"
 #include "retime_interval.hpp"
 
 namespace lfd {
 namespace {
 
 using retiming::Interval;
+using retiming::largest_between;
 using retiming::Slope;
 
 constexpr std::size_t least_rows = 50;  // whose spline is the motion
@@ -70,9 +71,9 @@ Retiming::State Retiming::operator()(double t) const {
 class Retiming::Solver {
  public:
   Solver(const Robot& robot, const Samples& joints, const RetimeOptions& options)
-      : robot_(robot),
-        joints_(joints),
+      : joints_(joints),
         options_(options),
+        limits_(robot, options),
         curve_(joints),
         along_(curve_.along()),
         rows_(curve_.knots()) {}
@@ -150,22 +151,11 @@ class Retiming::Solver {
       Slope& slope = slopes_[i];
       slope.first = state.velocity;
       slope.second = state.acceleration;
-      const double rate = speed_share(state);
-      const double bend = slope.second.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff();
+      const double rate = limits_.speed_share(state.position, state.velocity);
+      const double bend = limits_.acceleration_share(slope.second);
       // A path that stands still at a point (a cusp of the spline) is left by its second derivative alone.
       slope.most = std::min(1.0 / std::max(rate * rate, 1e-12), rate < 1e-9 && bend > 0.0 ? 1.0 / bend : infinity);
     }
-  }
-
-  /// Largest share of a limit of speed.
-  [[nodiscard]] double speed_share(const State& state) const {
-    const double joint = state.velocity.cwiseAbs().cwiseQuotient(options_.velocity).maxCoeff();
-    return options_.tip_speed ? std::max(joint, tip_share(state.position, state.velocity)) : joint;
-  }
-
-  [[nodiscard]] double tip_share(const Joints& position, const Joints& velocity) const {
-    const Jacobian J = jacobian(robot_, position, options_.tool.position);
-    return (J.topRows<3>() * velocity).norm() / *options_.tip_speed;
   }
 
   /// Backwards the largest x from which the rest can still be gone, forwards as fast as they allow.
@@ -193,25 +183,14 @@ class Retiming::Solver {
       for (int tenth = 0; tenth <= 10; ++tenth) {
         State& state = states[static_cast<std::size_t>(tenth)];
         state = law_.at(law_.points_[i], law_.points_[i + 1], tenth / 10.0);
-        most = std::max(most, speed_share(state));
+        most = std::max(most, limits_.speed_share(state.position, state.velocity));
       }
+      // A parabola: the path's first derivative, quadratic, times a constant, and its second times (ds/dt)^2, both
+      // linear.
       const Joints bend = largest_between(states[0].acceleration, states[5].acceleration, states[10].acceleration);
-      most = std::max(most, std::sqrt(bend.cwiseQuotient(options_.acceleration).maxCoeff()));
+      most = std::max(most, std::sqrt(limits_.acceleration_share(bend)));
     }
     return excess;
-  }
-
-  /// The largest amounts that parabolas reach between their values at 0, 1/2 and 1. The acceleration is one along a
-  /// grid interval: the path's first derivative, quadratic, times a constant, and its second times (ds/dt)^2, both
-  /// linear.
-  [[nodiscard]] static Joints largest_between(const Joints& begin, const Joints& middle, const Joints& end) {
-    Joints largest = begin.cwiseAbs().cwiseMax(end.cwiseAbs());
-    for (int j = 0; j < 6; ++j) {
-      const double square = 2.0 * (begin[j] - 2.0 * middle[j] + end[j]), slope = end[j] - begin[j] - square;
-      const double turn = -slope / (2.0 * square);
-      if (turn > 0.0 && turn < 1.0) largest[j] = std::max(largest[j], std::abs(begin[j] + 0.5 * turn * slope));
-    }
-    return largest;
   }
 
   /// The same of the splines through the knots over their times, for each of them: of the one that rests at both ends,
@@ -221,30 +200,8 @@ class Retiming::Solver {
     Vector times(K);
     for (Eigen::Index k = 0; k < K; ++k) times[k] = law_.points_[at_knot_[static_cast<std::size_t>(k)]].t;
     const Samples values = joints_(rows_, Eigen::all);
-    const Vector at_rest = excess_of(CubicSpline(times, values, SplineEnds::at_rest), times);
-    return at_rest.cwiseMax(excess_of(CubicSpline(times, values, SplineEnds::not_a_knot), times));
-  }
-
-  /// The second derivative of a spline is largest at a knot, its first a parabola between two; the tip is looked at in
-  /// quarters of the interval that ends there.
-  [[nodiscard]] Vector excess_of(const CubicSpline& spline, const Vector& times) const {
-    Vector excess(times.size());
-    for (Eigen::Index k = 0; k < times.size(); ++k) {
-      const Joints bend = spline.second_derivatives().row(k).transpose();
-      excess[k] = std::sqrt(bend.cwiseAbs().cwiseQuotient(options_.acceleration).maxCoeff());
-      if (k == 0) continue;
-      const Vector quarters = Vector::LinSpaced(5, times[k - 1], times[k]);
-      const Samples speeds = spline.derivative(quarters);
-      const Joints speed =
-          largest_between(speeds.row(0).transpose(), speeds.row(2).transpose(), speeds.row(4).transpose());
-      excess[k] = std::max(excess[k], speed.cwiseQuotient(options_.velocity).maxCoeff());
-      if (!options_.tip_speed) continue;
-      const Samples joints = spline(quarters);
-      for (Eigen::Index i = 0; i < 5; ++i) {
-        excess[k] = std::max(excess[k], tip_share(joints.row(i).transpose(), speeds.row(i).transpose()));
-      }
-    }
-    return excess;
+    const Vector at_rest = limits_.excess_of(CubicSpline(times, values, SplineEnds::at_rest), times);
+    return at_rest.cwiseMax(limits_.excess_of(CubicSpline(times, values, SplineEnds::not_a_knot), times));
   }
 
   /// Less acceleration in the intervals between whose ends it comes to too much, as where a joint turns round, and
@@ -281,9 +238,9 @@ class Retiming::Solver {
     }
   }
 
-  const Robot& robot_;
   const Samples& joints_;
   const RetimeOptions& options_;
+  retiming::Limits limits_;
   JointCurve curve_;
   const Vector& along_;                    // summed distances of the rows
   const std::vector<Eigen::Index>& rows_;  // that are knots
