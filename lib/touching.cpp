@@ -195,16 +195,17 @@ struct Tally {
   }
 };
 
-/// How often something is touched at each sample, and at any, and how often the hand is out of reach at any.
+/// How often something is touched at each sample, and at any, how often the hand is out of reach at any, and how often
+/// either.
 struct Tallies {
   std::vector<Tally> samples;
-  Tally path, out_of_reach;
+  Tally path, out_of_reach, either;
 };
 
 Tallies count(const ArmClearance& arm, const Surroundings& around, const HandSpread& spread,
               const TouchingOptions& options) {
   const auto& places = around.places();
-  Tallies tallies{std::vector<Tally>(around.certain().size()), {}, {}};
+  Tallies tallies{std::vector<Tally>(around.certain().size()), {}, {}, {}};
   if (places.empty()) return tallies;
   Matrix factor(3 * static_cast<Eigen::Index>(places.size()), spread.factor.cols());
   for (std::size_t p = 0; p < places.size(); ++p) {
@@ -223,6 +224,7 @@ Tallies count(const ArmClearance& arm, const Surroundings& around, const HandSpr
     }
     if (touches) tallies.path.add(weight);
     if (lost) tallies.out_of_reach.add(weight);
+    if (touches || lost) tallies.either.add(weight);
   };
   const Random random(options.seed);
   constexpr Eigen::Index block = 128;
@@ -256,10 +258,11 @@ Touching touching(const ArmClearance& arm, const Samples& joints, const HandSpre
   Touching result;
   result.path = tallies.path.chance(options.draws);
   result.out_of_reach = tallies.out_of_reach.chance(options.draws);
+  result.path_or_out_of_reach = tallies.either.chance(options.draws);
   for (std::size_t t = 0; t < tallies.samples.size(); ++t) {
     const bool certain = around.certain()[t];
     result.samples.push_back(certain ? Chance{1.0, 0.0} : tallies.samples[t].chance(options.draws));
-    if (certain) result.path = {1.0, 0.0};
+    if (certain) result.path = result.path_or_out_of_reach = {1.0, 0.0};
   }
   return result;
 }

@@ -51,6 +51,7 @@ constexpr double near_wrist_and_shoulder = 0.3, near_shoulder = 0.1;
 /// How far from a double root of the exact arm Newton steps start, as a sine: in the root itself the Jacobian is
 /// singular, and the calibrated arm has two solutions on either side of it, or none.
 constexpr std::array<double, 3> starts_apart = {0.2, 0.05, 0.0};
+constexpr double near_by = 0.02;    ///< solutions nearer than this may be one [rad]
 constexpr int starts_of_loops = 8;  ///< values of q6, over the whole turn
 
 /// The solutions of a calibrated arm, by Newton steps from those of the nearest exact arm and, where the wrist of that
@@ -101,17 +102,26 @@ class CalibratedSolutions {
     if (std::find(starts_.begin(), starts_.end(), start) != starts_.end()) return;
     starts_.push_back(start);
     auto refined = refine(arm_.robot(), flange_, start, tolerance_);
-    if (!refined || found_.count == found_.solutions.size()) return;
+    if (!refined) return;
     refined->branch = arm_.branch(refined->joints);
     // The exact arm's sin q5 is the sine between axes 4 and 6; those of the calibrated one are parallel elsewhere.
     const auto frames = joint_frames(arm_.robot(), refined->joints);
     refined->wrist_free = frames[3].rotation.col(2).cross(frames[5].rotation.col(2)).norm() <= tolerance_ / 10.0;
-    const auto is_known = [&](const IkSolution& other) {
-      const Joints apart = (other.joints - refined->joints).unaryExpr(&wrap_once);
-      const bool same_arm = ((other.branch ^ refined->branch) & 5) == 0;
-      return apart.cwiseAbs().maxCoeff() < 1e-5 || (same_arm && other.wrist_free && refined->wrist_free);
-    };
-    if (std::none_of(found_.begin(), found_.end(), is_known)) found_.solutions[found_.count++] = *refined;
+    for (IkSolution* other = found_.solutions.data(); other != found_.end(); ++other) {
+      if (!same(*other, *refined)) continue;
+      if (refined->residual < other->residual) *other = *refined;
+      return;
+    }
+    if (found_.count < found_.solutions.size()) found_.solutions[found_.count++] = *refined;
+  }
+
+  /// Newton steps that end short of one solution, or along a free wrist: what is between reaches the pose as well.
+  [[nodiscard]] bool same(const IkSolution& a, const IkSolution& b) const {
+    if (((a.branch ^ b.branch) & 5) == 0 && a.wrist_free && b.wrist_free) return true;
+    const Joints apart = (b.joints - a.joints).unaryExpr(&wrap_once);
+    const double largest = apart.cwiseAbs().maxCoeff();
+    if (largest < 1e-5 || largest > near_by) return largest < 1e-5;
+    return distance(forward_kinematics(arm_.robot(), a.joints + 0.5 * apart), flange_).largest() <= tolerance_;
   }
 
   const InverseKinematics& arm_;

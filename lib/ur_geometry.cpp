@@ -124,14 +124,15 @@ std::string out_of_reach_words(const UrGeometry& g, const Pose& flange) {
   const double from_shoulder = (wrist - Vector3(0.0, 0.0, g.d1)).norm();
   const double longest = std::hypot(std::abs(g.a2) + std::abs(g.a3) + std::abs(g.d5), g.d4);
   if (from_shoulder > longest) {
-    return fmt::format("the wrist is {:.3f} m from the shoulder, where {:.3f} m are the most", from_shoulder, longest);
+    return fmt::format("the wrist is {:.3f} m from the shoulder, {:.3g} mm more than the arm is long", from_shoulder,
+                       1e3 * (from_shoulder - longest));
   }
   const double from_axis = std::hypot(wrist.x(), wrist.y());
   if (from_axis < std::abs(g.d4)) {
-    return fmt::format("the wrist is {:.3f} m from the axis of the base, where {:.3f} m are the least", from_axis,
-                       std::abs(g.d4));
+    return fmt::format("the wrist is {:.3f} m from the axis of the base, {:.3g} mm less than it can be", from_axis,
+                       1e3 * (std::abs(g.d4) - from_axis));
   }
-  return "in this orientation the elbow cannot close";
+  return "the elbow cannot close there";
 }
 
 Robot nominal_ur10() {

@@ -10,20 +10,26 @@ namespace {
 
 constexpr double least_step = 1e-4;  // along a loop [rad]
 constexpr double most_step = 0.25;
-constexpr int most_points = 2000;   // of a loop
-constexpr double on_loop = 1e-9;    // what is kept of the pose is kept to this, larger of metres and radians
-constexpr double least_turn = 0.9;  // cosine between the tangents of neighbours
-constexpr double touching = 5e-3;   // a tilt from which Newton steps may come to a zero [rad]
+constexpr std::size_t most_points = 500;  // of a loop, which has about 50
+constexpr double same_point = 1e-6;       // of a loop [rad]
+constexpr double on_loop = 1e-9;          // what is kept of the pose is kept to this, larger of metres and radians
+constexpr double least_turn = 0.9;        // cosine between the tangents of neighbours
+constexpr double touching = 5e-3;         // a tilt from which Newton steps may come to a zero [rad]
 
 Joints wrapped(const Joints& q) {
   return q.unaryExpr([](double angle) { return wrap_angle(angle); });
 }
 
-/// How far a point is from a piece of a loop, all of them modulo 2 pi; from beyond its ends to them.
-double distance_from(const Joints& joints, const Joints& begin, const Joints& end) {
+/// Where a point's foot on the chord between two others lies, as a share of it from 0 to 1, and how far away, all of
+/// them modulo 2 pi.
+struct Foot {
+  double share, distance;
+};
+
+Foot foot_on(const Joints& joints, const Joints& begin, const Joints& end) {
   const Joints along = end - begin, off = wrapped(joints - begin);
   const double share = std::clamp(off.dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
-  return (off - share * along).norm();
+  return {share, (off - share * along).norm()};
 }
 
 }  // namespace
@@ -37,11 +43,13 @@ bool WristLoops::corrected(const Joints& start, Point& point) const {
     const Vector3 across = axis5.cross(axis6).normalized();
     const Vector3 turn = vector_from_rotation(flange_.rotation * frames[6].rotation.transpose());
     Eigen::Matrix<double, 6, 5> transposed;  // of the Jacobian of what is kept
+    Joints of_tilt;                          // row of the Jacobian of the tilt
     for (std::size_t j = 0; j < 6; ++j) {
       const Vector3 axis = frames[j].rotation.col(2);
       const auto row = static_cast<Eigen::Index>(j);
       transposed.row(row) << axis.cross(frames[6].position - frames[j].position).transpose(), axis.dot(axis5),
           axis.dot(axis6);
+      of_tilt[row] = -axis.dot(across);
     }
     Eigen::Matrix<double, 5, 1> off;
     off << flange_.position - frames[6].position, turn.dot(axis5), turn.dot(axis6);
@@ -52,6 +60,7 @@ bool WristLoops::corrected(const Joints& start, Point& point) const {
     if (off.cwiseAbs().maxCoeff() <= on_loop) {
       point.tangent = Q.col(5);
       point.tilt = turn.dot(across);
+      point.slope = of_tilt.dot(point.tangent);  // exact: the turn left is along `across`, whose change is across it
       return true;
     }
     const Eigen::Matrix<double, 5, 1> y = R.triangularView<Eigen::Upper>().transpose().solve(off);
@@ -68,7 +77,7 @@ bool WristLoops::corrected(const Joints& start, Point& point) const {
 bool WristLoops::step(const Point& from, double& length, Point& next) const {
   for (; length >= least_step; length *= 0.5) {
     if (!corrected(from.joints + length * from.tangent, next)) continue;
-    if (next.tangent.dot(from.tangent) < 0.0) next.tangent *= -1.0;
+    if (next.tangent.dot(from.tangent) < 0.0) next.turn_back();
     const double gone = (next.joints - from.joints).dot(from.tangent);
     if (gone < 0.5 * length || gone > 1.5 * length || next.tangent.dot(from.tangent) < least_turn) continue;
     length = std::min(1.5 * length, most_step);
@@ -77,59 +86,85 @@ bool WristLoops::step(const Point& from, double& length, Point& next) const {
   return false;
 }
 
-bool WristLoops::is_known(const Joints& joints) const {
-  for (std::size_t k = 0; k < loop_begin_.size(); ++k) {
-    const std::size_t end = k + 1 < loop_begin_.size() ? loop_begin_[k + 1] : traced_.size();
-    for (std::size_t i = loop_begin_[k]; i + 1 < end; ++i) {
-      const Joints along = traced_[i + 1] - traced_[i];
-      // A chord leaves its arc by an eighth of its length times the angle between their tangents.
-      if (distance_from(joints, traced_[i], traced_[i + 1]) < 0.06 * along.norm()) return true;
+/// Whether the piece of a loop between two points leads through another point of a loop: from the foot on its chord
+/// the loop is followed towards that, which another loop that passes near by would not reach.
+bool WristLoops::leads_through(const Joints& begin, const Joints& end, const Point& point) const {
+  const auto [share, distance] = foot_on(point.joints, begin, end);
+  if (distance > 0.5 * (end - begin).norm()) return false;
+  Point near;
+  Joints start = begin + share * (end - begin);
+  double before = 1e300;
+  for (int i = 0; i < 8; ++i) {
+    if (!corrected(start, near)) return false;
+    const Joints left = wrapped(point.joints - near.joints);
+    if (left.norm() < same_point) return true;
+    if (!(left.norm() < 0.7 * before)) return false;
+    before = left.norm();
+    start = near.joints + left.dot(near.tangent) * near.tangent;
+  }
+  return false;
+}
+
+bool WristLoops::is_known(const Point& point) const {
+  for (const auto& loop : loops_) {
+    for (std::size_t i = 0; i + 1 < loop.size(); ++i) {
+      if (leads_through(loop[i], loop[i + 1], point)) return true;
     }
+  }
+  return false;
+}
+
+/// Adds points until the loop meets itself, or can be followed no further. It is compared with its first points (where
+/// it begins in a bend its next round may pass one too far off to tell) and with that of the last power of two (where
+/// two loops nearly cross it may have gone over to the other, and not come back).
+/// @return whether it meets itself
+bool WristLoops::follow(std::vector<Point>& points) const {
+  double length = 0.1;
+  std::size_t mark = 8;
+  while (points.size() < most_points) {
+    Point next;
+    if (!step(points.back(), length, next)) return false;
+    const Joints here = points.back().joints;
+    if (points.size() > 2 * mark) mark *= 2;
+    for (const std::size_t known : {std::size_t{0}, std::size_t{3}, mark}) {
+      if (points.size() < known + 3) break;
+      Point met = points[known];
+      if (next.tangent.dot(met.tangent) < 0.0 || !leads_through(here, next.joints, met)) continue;
+      met.joints = here + wrapped(met.joints - here);
+      points.push_back(met);
+      return true;
+    }
+    points.push_back(next);
   }
   return false;
 }
 
 void WristLoops::trace(const Joints& joints) {
   Point first;
-  if (!corrected(joints, first) || is_known(first.joints)) return;
+  if (!corrected(joints, first) || is_known(first)) return;
   std::vector<Point> points{first};
-  bool closed = false;
-  for (const double sense : {1.0, -1.0}) {
-    double length = 0.1;
-    Point here = first;
-    here.tangent *= sense;
-    for (int i = 0; i < most_points && !closed; ++i) {
-      Point next;
-      if (!step(here, length, next)) break;
-      closed = i > 2 &&
-               distance_from(first.joints, here.joints, next.joints) < 0.06 * (next.joints - here.joints).norm() &&
-               next.tangent.dot(first.tangent) * sense > 0.0;
-      if (closed) {  // the last piece ends where the loop began
-        const Point last = points.back();
-        next = first;
-        next.joints = last.joints + wrapped(first.joints - last.joints);
-      }
-      points.push_back(next);
-      here = next;
-    }
-    if (closed) break;
-    std::reverse(points.begin(), points.end());  // a way that stopped: its other half goes before it
+  if (!follow(points)) {  // its other half goes before it
+    first.turn_back();
+    std::vector<Point> back{first};
+    (void)follow(back);
+    for (Point& point : back) point.turn_back();
+    points.insert(points.begin(), back.rbegin(), back.rend() - 1);
   }
-  loop_begin_.push_back(traced_.size());
-  for (const Point& point : points) traced_.push_back(point.joints);
+  std::vector<Joints>& loop = loops_.emplace_back();
+  for (const Point& point : points) loop.push_back(point.joints);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    if ((points[i].tilt < 0.0) != (points[i + 1].tilt < 0.0)) find_zero(points[i], points[i + 1]);
-  }
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const bool last = i + 1 == points.size();
-    if (last && !closed) break;
-    find_dip(points[i - 1], points[i], last ? points[1] : points[i + 1]);
+    const Point &begin = points[i], &end = points[i + 1];
+    if ((begin.tilt < 0.0) != (end.tilt < 0.0)) {
+      find_zero(begin, end);
+    } else if ((begin.slope < 0.0) != (end.slope < 0.0) && (begin.tilt < 0.0) != (begin.slope < 0.0)) {
+      find_dip(begin, end);
+    }
   }
 }
 
 /// The point over a share of the chord between two.
 bool WristLoops::between(const Point& a, const Point& b, double share, Point& point) const {
-  return corrected(a.joints + share * wrapped(b.joints - a.joints), point);
+  return corrected(a.joints + share * (b.joints - a.joints), point);
 }
 
 /// False position between two tilts of different sign, as near as Newton steps need it.
@@ -143,27 +178,20 @@ void WristLoops::find_zero(Point low, Point high) {
 }
 
 /// Two zeros may hide where the tilt comes near zero and goes back; one, where it only touches it.
-void WristLoops::find_dip(Point low, Point middle, Point high) {
-  const double sign = middle.tilt < 0.0 ? -1.0 : 1.0;
-  const auto above = [&](const Point& point) { return sign * point.tilt; };
-  if (above(low) < above(middle) || above(high) < above(middle)) return;
+void WristLoops::find_dip(Point begin, Point end) {
   for (int i = 0; i < 10; ++i) {
-    const bool first = (middle.joints - low.joints).norm() > wrapped(high.joints - middle.joints).norm();
-    Point other;
-    if (!between(first ? low : middle, first ? middle : high, 0.5, other)) break;
-    if (above(other) < 0.0) {
-      find_zero(first ? low : middle, other);
-      find_zero(other, first ? middle : high);
+    Point middle;
+    if (!between(begin, end, std::clamp(begin.slope / (begin.slope - end.slope), 0.1, 0.9), middle)) break;
+    if (middle.tangent.dot(end.joints - begin.joints) < 0.0) middle.turn_back();
+    if ((middle.tilt < 0.0) != (begin.tilt < 0.0)) {
+      find_zero(begin, middle);
+      find_zero(middle, end);
       return;
     }
-    if (above(other) < above(middle)) {
-      (first ? high : low) = middle;
-      middle = other;
-    } else {
-      (first ? low : high) = other;
-    }
+    ((middle.slope < 0.0) == (begin.slope < 0.0) ? begin : end) = middle;
   }
-  if (above(middle) < touching) zeros_.push_back(middle.joints);
+  const Point& lowest = std::abs(begin.tilt) < std::abs(end.tilt) ? begin : end;
+  if (std::abs(lowest.tilt) < touching) zeros_.push_back(lowest.joints);
 }
 
 }  // namespace lfd

@@ -21,6 +21,9 @@ class WristLoops {
   /// @param joints  whose hand is within some centimetres and hundredths of a radian of the pose [rad]
   void trace(const Joints& joints);
 
+  /// Points of the loops traced, each up to where it meets itself [rad].
+  [[nodiscard]] const std::vector<std::vector<Joints>>& loops() const { return loops_; }
+
   /// Joints beside all zeros of the tilt on the loops traced, and beside where it comes near zero and goes back: starts
   /// for Newton steps [rad].
   [[nodiscard]] const std::vector<Joints>& zeros() const { return zeros_; }
@@ -30,18 +33,25 @@ class WristLoops {
     Joints joints = Joints::Zero();
     Joints tangent = Joints::Zero();  // unit
     double tilt = 0.0;                // [rad], signed
+    double slope = 0.0;               // of the tilt, along the tangent [rad/rad]
+
+    void turn_back() {
+      tangent = -tangent;
+      slope = -slope;
+    }
   };
   [[nodiscard]] bool corrected(const Joints& start, Point& point) const;
   [[nodiscard]] bool step(const Point& from, double& length, Point& next) const;
   [[nodiscard]] bool between(const Point& a, const Point& b, double share, Point& point) const;
-  [[nodiscard]] bool is_known(const Joints& joints) const;
+  [[nodiscard]] bool follow(std::vector<Point>& points) const;
+  [[nodiscard]] bool leads_through(const Joints& begin, const Joints& end, const Point& point) const;
+  [[nodiscard]] bool is_known(const Point& point) const;
   void find_zero(Point low, Point high);
-  void find_dip(Point low, Point middle, Point high);
+  void find_dip(Point begin, Point end);
 
   const Robot& robot_;
   const Pose& flange_;
-  std::vector<Joints> traced_;           // of all loops
-  std::vector<std::size_t> loop_begin_;  // of each in `traced_`
+  std::vector<std::vector<Joints>> loops_;
   std::vector<Joints> zeros_;
 };
 

@@ -235,7 +235,7 @@ TEST_CASE("words for a pose out of reach say what is true of it, and of no pose 
   CHECK(turned > 10);
   Pose beyond;
   beyond.position << 2.0, 0.0, g.d1 + g.d6;  // the hand points up, so its wrist is 2 m away at the shoulder's height
-  CHECK(out_of_reach_words(g, beyond) == "the wrist is 2.000 m from the shoulder, where 1.310 m are the most");
+  CHECK(out_of_reach_words(g, beyond) == "the wrist is 2.000 m from the shoulder, 690 mm more than the arm is long");
 }
 
 TEST_CASE("branches follow the signs they name, and poses out of reach have no solution") {

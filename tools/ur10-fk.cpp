@@ -7,30 +7,6 @@
 
 using namespace lfd;
 
-namespace {
-
-const std::vector<std::string> pose_names = {"x", "y", "z", "qw", "qx", "qy", "qz"};
-
-/// Every row for itself, as those of `ur10-ik --all`, where several solutions stand at one time: no path, so times need
-/// not rise and signs of quaternions not go on.
-template <class PoseOf>
-void write_solutions(const CsvTable& table, PoseOf pose_of, Output& output) {
-  const std::vector<std::string> before{"t", "solution"}, read = joined(before, joint_columns());
-  LabelledTable out(output, joined(before, pose_names));
-  for (std::size_t i = 0; i < table.groups().size(); ++i) {
-    const Samples values = table.read_group(i, read).values;
-    Samples rows(values.rows(), 9);
-    for (Eigen::Index k = 0; k < values.rows(); ++k) {
-      const Pose tip = pose_of(Joints(values.row(k).tail<6>().transpose()));
-      rows.row(k) << values.row(k).head<2>(), tip.position.transpose(),
-          quaternion_from_rotation(tip.rotation).transpose();
-    }
-    out.write(table.groups()[i].labels, rows);
-  }
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   PoseOptions pose;
   std::string robot_name = "ur10";
@@ -45,27 +21,27 @@ int main(int argc, char** argv) {
     const Robot robot = load_robot(find_data_file(robot_name, "robots"), run.messages(), run.options().strict);
     const Pose base_in_frame = inverse(frame_in_base(robot, pose.frame));
     const Pose tool = tool_pose(pose);
-    const auto pose_of = [&](const Joints& q) { return base_in_frame * forward_kinematics(robot, q) * tool; };
     CsvTable input(run.open(), run.messages());
-    if (input.has("solution")) {
-      write_solutions(input, pose_of, run.output());
-      return;
-    }
-    const DemonstrationSource source(std::move(input), run.messages(),
-                                     {.columns = joint_columns(), .extras = {}, .min_samples = 1});
-    LabelledTable table(run.output(), joined({"t"}, pose_names));
+    const bool solutions = input.has("solution");  // of ur10-ik --all: several at one time, each for itself
+    const std::vector<std::string> number =
+        solutions ? std::vector<std::string>{"solution"} : std::vector<std::string>{};
+    const DemonstrationSource source(
+        std::move(input), run.messages(),
+        {.columns = joint_columns(), .extras = number, .min_samples = 1, .rising = !solutions});
+    LabelledTable table(run.output(), joined(joined({"t"}, number), {"x", "y", "z", "qw", "qx", "qy", "qz"}));
     for (std::size_t i = 0; i < source.recordings(); ++i) {
       const Recording recording = source.recording(i);
       const Trajectory& path = recording.demonstration.trajectory;
-      Samples rows(path.samples(), 8);
+      Samples rows(path.samples(), 7);
       Quaternion previous = Quaternion::Unit(0);
       for (Eigen::Index k = 0; k < path.samples(); ++k) {
-        const Pose tip = pose_of(Joints(path.positions.row(k).transpose()));
+        const Joints q = path.positions.row(k).transpose();
+        const Pose tip = base_in_frame * forward_kinematics(robot, q) * tool;
         const Quaternion orientation = quaternion_from_rotation(tip.rotation);
-        previous = k == 0 ? orientation : same_sign(previous, orientation);
-        rows.row(k) << path.times[k], tip.position.transpose(), previous.transpose();
+        previous = k == 0 || solutions ? orientation : same_sign(previous, orientation);
+        rows.row(k) << tip.position.transpose(), previous.transpose();
       }
-      table.write(recording.demonstration.labels, rows);
+      table.write(recording.demonstration.labels, beside(beside(path.times, recording.extras), rows));
     }
   });
 }

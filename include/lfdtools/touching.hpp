@@ -27,6 +27,7 @@ struct Touching {
   std::vector<Chance> samples;  ///< T, of each sample by itself
   Chance path;                  ///< of any sample
   Chance out_of_reach;          ///< that at any sample where something might be touched the hand is out of reach
+  Chance path_or_out_of_reach;  ///< of either
 };
 
 /// Probability that the arm touches, by sample and for the samples together: paths of the hand are drawn from the

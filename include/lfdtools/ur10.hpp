@@ -48,15 +48,15 @@ struct IkSolutions {
 /// Solver for one arm. Closed form for the exact pattern; for calibrated DH rows the closed form of the nearest exact
 /// arm, refined by Newton steps. Where the wrist of that is nearly singular, calibration alone decides on q6, and the
 /// solutions are looked for all along the arm's self-motion. Of arms whose axes are off by milliradians, one solution
-/// in 10^4 or fewer is missed, some in 10^4 beside two singularities at once.
+/// in 10^4 or fewer is missed, some in 10^4 beside two singularities at once and in 10^3 exactly in both.
 class InverseKinematics {
  public:
   /// @throws ConfigError as check(Robot) and ur_geometry
   explicit InverseKinematics(Robot robot);
 
-  /// All configurations that reach the pose, distinct modulo 2 pi; none means out of reach. A double root
-  /// (arm stretched or folded, wrist centre as near to the base axis as it can be) is one solution. Joint limits are
-  /// not looked at.
+  /// All configurations that reach the pose, distinct modulo 2 pi; none means out of reach (of a calibrated arm, but
+  /// for what it misses). A double root (arm stretched or folded, wrist centre as near to the base axis as it can be)
+  /// is one solution. Joint limits are not looked at.
   /// @param flange  pose of the flange in the base [m]
   /// @throws DataError [ur10.pose_not_rigid] if it is not finite or its rotation not orthonormal to 1e-9
   [[nodiscard]] IkSolutions operator()(const Pose& flange, const IkOptions& options = {}) const;

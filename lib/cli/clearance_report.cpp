@@ -124,36 +124,42 @@ std::vector<LinkClearance> rows_of(const ArmClearance& arm, const Joints& q, boo
   return closest;
 }
 
+Scene scene_of(const std::string& file, bool self, Run& run) {
+  Scene scene = load_scene(file, run.messages(), run.options().strict);
+  if (!scene.obstacles.empty()) return scene;
+  if (!self) {
+    throw UsageError(
+        "usage.missing",
+        fmt::format("there is nothing to keep clear of: {} has no obstacles, and --self is not given", file));
+  }
+  run.messages().warning("scene.empty", "the scene has no obstacles: only the arm itself counts",
+                         {file, 0, 0, "/obstacles"});
+  return scene;
+}
+
+/// In a column that holds both, a name must say which it is.
+void require_other_names(const Scene& scene, const std::string& file, const ArmClearance& arm) {
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const std::string name = scene.obstacles[i].called(i);
+    const auto called = [&](const Capsule& link) { return link.name == name; };
+    if (std::none_of(arm.bodies().begin(), arm.bodies().end(), called)) continue;
+    throw ConfigError("scene.name_of_link", fmt::format("an obstacle is called '{}', as a link of the arm is", name),
+                      {file, 0, 0, fmt::format("/obstacles/{}", i)});
+  }
+}
+
 }  // namespace
 
 void report_clearance(const ClearanceRequest& request, Run& run) {
   Robot robot = load_robot_with_links(find_data_file(request.robot, "robots"), run.messages(), run.options().strict);
-  Scene scene;
-  if (!request.scene.empty()) {
-    const std::string file = find_data_file(request.scene, "scenes");
-    scene = load_scene(file, run.messages(), run.options().strict);
-    if (scene.obstacles.empty() && !request.self) {
-      throw UsageError("usage.missing", fmt::format("there is nothing to keep clear of: {} has no obstacles, and "
-                                                    "--self is not given",
-                                                    file));
-    }
-    for (std::size_t i = 0; request.self && i < scene.obstacles.size(); ++i) {
-      const std::string name = scene.obstacles[i].called(i);
-      const auto called = [&](const Capsule& link) { return link.name == name; };
-      if (std::none_of(robot.links.begin(), robot.links.end(), called)) continue;
-      throw ConfigError("scene.name_of_link", fmt::format("an obstacle is called '{}', as a link of the arm is", name),
-                        {file, 0, 0, fmt::format("/obstacles/{}/name", i)});
-    }
-    if (scene.obstacles.empty()) {
-      run.messages().warning("scene.empty", "the scene has no obstacles: only the arm itself counts",
-                             {file, 0, 0, "/obstacles"});
-    }
-  }
+  const std::string file = request.scene.empty() ? "" : find_data_file(request.scene, "scenes");
+  const Scene scene = file.empty() ? Scene{} : scene_of(file, request.self, run);
   const Pose tool = tool_pose(request.pose);
   std::optional<Capsule> held;
   if (request.pose.tool) held = tool_capsule(tool, request.tool_radius);
   const std::vector<Solid> solids = scene.in_base(robot);
   const ArmClearance arm(std::move(robot), solids, held);
+  if (request.self) require_other_names(scene, file, arm);
   const HandSpreadSource spreads(request, arm.robot(), run);
 
   DemonstrationSource source(CsvTable(run.open(), run.messages()), run.messages(),
@@ -184,10 +190,12 @@ void report_clearance(const ClearanceRequest& request, Run& run) {
                       chances.path.probability,
                       chances.path.error > 0 ? fmt::format(" (standard error {:.1g})", chances.path.error) : "");
       // Of a path that the arm cannot follow nobody knows what it would touch.
-      const double lost = chances.out_of_reach.probability;
-      if (request.max_probability && chances.path.probability + lost > *request.max_probability) {
-        const std::string also = lost > 0.0 ? fmt::format(" and leaves the arm's reach with {:.3g}", lost) : "";
-        run.refuse("probability", fmt::format("{}{}, over {:g}", text, also, *request.max_probability),
+      const double either = chances.path_or_out_of_reach.probability;
+      if (request.max_probability && either > *request.max_probability) {
+        const std::string lost = chances.out_of_reach.probability > 0.0
+                                     ? fmt::format(", or leaves the arm's reach, together {:.3g}", either)
+                                     : "";
+        run.refuse("probability", fmt::format("{}{}, over {:g}", text, lost, *request.max_probability),
                    recording.place(0));
       }
       run.detail("clearance.probability", text);

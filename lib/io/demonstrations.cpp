@@ -200,13 +200,14 @@ Recording DemonstrationSource::recording(std::size_t i) const {
   const Samples& values = block.values;
   const Eigen::Index rows = values.rows();
   const auto t = values.col(0);
-  if (rows > 1 && (t.array() == t[0]).all() && (values.rowwise() - values.row(0)).cwiseAbs().maxCoeff() > 0) {
+  if (options_.rising && rows > 1 && (t.array() == t[0]).all() &&
+      (values.rowwise() - values.row(0)).cwiseAbs().maxCoeff() > 0) {
     throw DataError("demo.time_constant", "the time never changes", block.place(0));
   }
 
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < rows; ++k) {
-    if (!kept.empty()) {
+    if (options_.rising && !kept.empty()) {
       const Eigen::Index before = kept.back();
       const std::string times = number_text(t[before]) + " to " + number_text(t[k]);
       if (t[k] < t[before]) throw DataError("demo.time_falls", "the time goes back from " + times, block.place(k));
@@ -238,7 +239,7 @@ Recording DemonstrationSource::recording(std::size_t i) const {
   recording.extras = values(kept, Eigen::seqN(1 + D, values.cols() - 1 - D));
   recording.file = block.file;
   for (const Eigen::Index k : kept) recording.lines.push_back(block.first_line + static_cast<std::size_t>(k));
-  warn_of_sampling(recording, options_.gaps, messages_);
+  if (options_.rising) warn_of_sampling(recording, options_.gaps, messages_);
   if (!warned_of_unit_) warned_of_unit_ = warn_of_unit(recording, columns_, messages_);
   return recording;
 }

@@ -16,6 +16,7 @@ struct DemonstrationOptions {
   std::vector<std::string> extras;   ///< further numeric columns to read beside the signals, such as start_x or qw
   Eigen::Index min_samples = 3;      ///< fewer in a group are refused
   bool gaps = true;                  ///< warn of them; not where samples need not be evenly in time
+  bool rising = true;                ///< times must rise; false: every row stands for itself, as solutions of a pose do
 };
 
 /// The signals of a table: `x,y,z` if all three are there, else every other numeric column, never labels, t, qw..qz,
