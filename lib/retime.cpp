@@ -24,13 +24,13 @@ constexpr double least_period = 1e-6;   // between rows that the path does not t
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const Samples& joints, const RetimeOptions& options) {
-  const auto usable = [](double limit) { return limit >= RetimeOptions::least && limit <= RetimeOptions::most; };
+  const auto usable = [](double limit) { return limit >= JointLimits::least_rate && limit <= JointLimits::most_rate; };
   if (!std::all_of(options.velocity.begin(), options.velocity.end(), usable) ||
       !std::all_of(options.acceleration.begin(), options.acceleration.end(), usable) ||
       (options.tip_speed && !usable(*options.tip_speed)) || options.grid < 1) {
     throw UsageError("retime.options", fmt::format("limits of speed and acceleration are from {:g} to {:g}, the grid "
                                                    "is positive",
-                                                   RetimeOptions::least, RetimeOptions::most));
+                                                   JointLimits::least_rate, JointLimits::most_rate));
   }
   if (joints.rows() < 2 || joints.cols() != 6) {
     throw DataError("retime.shape", fmt::format("joints of {} x {}: two rows are needed at least, and six columns",

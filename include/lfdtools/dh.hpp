@@ -26,6 +26,8 @@ struct DhRow {
 
 /// What the joints may do.
 struct JointLimits {
+  static constexpr double least_rate = 1e-6, most_rate = 1e6;  ///< of a velocity or acceleration that a file may have
+
   Eigen::Matrix<double, 6, 2> position = Eigen::Matrix<double, 6, 2>::Zero();  ///< lower, upper [rad]
   Joints velocity = Joints::Zero();                                            ///< [rad/s]
   std::optional<Joints> acceleration;                                          ///< [rad/s^2], where the file has it

@@ -11,8 +11,7 @@ namespace lfd {
 
 /// What the motion must keep.
 struct RetimeOptions {
-  static constexpr double least = 1e-6, most = 1e6;  ///< of every limit
-
+  /// Limits are within JointLimits::least_rate and most_rate, that of the tip as well.
   Joints velocity = Joints::Constant(1.0);      ///< [rad/s]
   Joints acceleration = Joints::Constant(1.0);  ///< [rad/s^2]
   std::optional<double> tip_speed;              ///< of the tool tip [m/s]

@@ -28,7 +28,8 @@ std::string_view gate_of(PathStatus status) {
 }  // namespace
 
 void declare_arm_gates(Program& program, ArmLimits& limits) {
-  program.number("--max-tcp-speed", limits.tcp_speed, Range<double>{1e-6, 1e6}, "largest speed of the tool tip [m/s]");
+  program.number("--max-tcp-speed", limits.tcp_speed, Range<double>{JointLimits::least_rate, JointLimits::most_rate},
+                 "largest speed of the tool tip [m/s]");
   program.number("--max-tcp-acceleration", limits.tcp_acceleration, positive,
                  "largest acceleration of the tool tip [m/s^2]");
   program.number("--max-condition", limits.condition, positive, "largest condition number of the Jacobian");

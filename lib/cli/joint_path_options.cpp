@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "lfdtools/cli/joint_path_request.hpp"
-#include "lfdtools/retime.hpp"
 
 namespace lfd::cli {
 
@@ -19,7 +18,7 @@ void declare_joint_path_request(Program& program, JointPathRequest& request) {
   program.path("--posture", request.posture, "demonstrations with q1..q6: keep their shoulder, elbow and wrist");
   program.flag("--given-rows", request.given_rows, "no rows between those of the input, however far apart they are");
   program.flag("--retime", request.retime, "new times: the fastest motion along the path within the limits");
-  program.number("--acceleration", request.acceleration, Range<double>{RetimeOptions::least, RetimeOptions::most},
+  program.number("--acceleration", request.acceleration, Range<double>{JointLimits::least_rate, JointLimits::most_rate},
                  "limit of every joint's acceleration, in place of the robot file's [rad/s^2]");
   program.flag("--all", request.all, "write every distinct solution of every pose instead of a path");
   program.flag("--speeds", request.speeds, "add columns qd1..qd6 [rad/s]");

@@ -17,8 +17,7 @@ namespace {
 constexpr const char* format = "lfdtools.robot";
 constexpr std::size_t joints = 6;
 constexpr std::size_t most_links = 1000;
-constexpr double least_rate = 1e-6, most_rate = 1e6;  // of a joint's limits [rad/s, rad/s^2]
-constexpr std::uint64_t most_bytes = 10'000'000;      // of a file in another format
+constexpr std::uint64_t most_bytes = 10'000'000;  // of a file in another format
 
 Pose read_pose(const JsonView& view) {
   view.only({"position", "orientation"});
@@ -62,7 +61,8 @@ void read_limits(const JsonView& view, JointLimits& limits) {
     const Joints rates = list.vector(joints);
     for (std::size_t i = 0; i < joints; ++i) {
       const double rate = list.at(i).positive();
-      if (rate < least_rate || rate > most_rate) list.at(i).fail("json.out_of_range", "a limit is from 1e-6 to 1e6");
+      if (rate >= JointLimits::least_rate && rate <= JointLimits::most_rate) continue;
+      list.at(i).fail("json.out_of_range", "a limit is from 1e-6 to 1e6");
     }
     return rates;
   };

@@ -128,8 +128,9 @@ class UrdfReader {
     const UrdfJoint& joint = joints_[static_cast<std::size_t>(i)];
     const auto& given = joint->limits;
     const bool endless = joint->type == urdf::Joint::CONTINUOUS;
-    if (!given || !(given->velocity > 0.0) || (!endless && !(given->lower < given->upper))) {
-      fail("urdf.limits", "a joint needs a range and a positive speed limit", joint->name);
+    const bool fast = given && given->velocity >= JointLimits::least_rate && given->velocity <= JointLimits::most_rate;
+    if (!fast || (!endless && !(given->lower < given->upper))) {
+      fail("urdf.limits", "a joint needs a range and a limit of its speed from 1e-6 to 1e6", joint->name);
     }
     constexpr double turn = 2.0 * std::numbers::pi;
     limits.position.row(i) << (endless ? -turn : given->lower), (endless ? turn : given->upper);
